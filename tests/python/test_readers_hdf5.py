@@ -231,3 +231,71 @@ def test_netcdf_uneven_and_unitless(tmp_path):
         file["lev"][:] = [1000, 850, 500]
     with pytest.raises(Error, match="lev: uneven coordinates"):
         Volume(path)
+
+
+def grid_file(path, axes, array, kind="NETCDF4", **variable):
+    """Variable v with coordinate variables: name -> (attributes, values), slowest first."""
+    netCDF4 = pytest.importorskip("netCDF4", reason="python3-netcdf4 is missing")
+    with netCDF4.Dataset(path, "w", format=kind) as file:
+        for name, (attributes, values) in axes.items():
+            file.createDimension(name, len(values))
+            axis = file.createVariable(name, "f8", (name,))
+            axis.setncatts(attributes)
+            axis[:] = values
+        value = file.createVariable("v", array.dtype, tuple(axes), **variable)
+        value.set_auto_maskandscale(False)
+        value[...] = array
+
+
+@pytest.mark.parametrize(
+    "lev, y, signs",
+    [
+        (({"units": "m"}, [1, 2, 3]), ({"units": "degrees_north"}, [10, 0, -10, -20]), (1, -1, 1)),
+        (({"units": "hPa"}, [1000, 850, 700]), ({"units": "m"}, [9, 6, 3, 0]), (1, -1, 1)),
+        (({"units": "hPa"}, [700, 850, 1000]), ({"units": "m"}, [0, 3, 6, 9]), (1, 1, -1)),
+        (({"units": "1", "positive": "down"}, [1, 2, 3]), ({"units": "m"}, [0, 3, 6, 9]), (1, 1, -1)),
+    ],
+)
+def test_netcdf_axes_of_unlike_units_keep_their_directions(tmp_path, lev, y, signs):
+    path = str(tmp_path / "a.nc")
+    x = ({"units": y[0]["units"].replace("north", "east")}, [0, 1, 2])
+    grid_file(path, {"lev": lev, "y": y, "x": x}, np.arange(36, dtype="f4").reshape(3, 4, 3))
+    volume = read(path)
+    np.testing.assert_allclose(affine(volume)[:3, :3], np.diag(signs))
+
+
+def test_netcdf_depths_point_down(tmp_path):
+    path = str(tmp_path / "a.nc")
+    depth = ({"units": "m", "positive": "down"}, [1, 4, 7])
+    axis = ({"units": "m"}, [0, 1, 2, 3])
+    grid_file(path, {"depth": depth, "y": axis, "x": axis}, np.arange(48, dtype="f4").reshape(3, 4, 4))
+    matrix = affine(read(path))
+    np.testing.assert_allclose(matrix[:3, :3], np.diag([1000, 1000, -3000]))
+    np.testing.assert_allclose(matrix[:3, 3], [0, 0, -1000])
+
+
+@pytest.mark.parametrize("kind", NETCDF_FORMATS[:1] + NETCDF_FORMATS[-2:])
+@pytest.mark.parametrize("dtype, fill", [("i2", -32767), ("i4", -2147483647), ("f4", 9.969209968386869e36), ("i1", -127)])
+def test_netcdf_default_fill_values(tmp_path, kind, dtype, fill):
+    path = str(tmp_path / "a.nc")
+    array = np.arange(27).reshape(3, 3, 3).astype(dtype)
+    array[1, 1, 1] = fill
+    axes = {name: ({}, [0, 1, 2]) for name in "zyx"}
+    grid_file(path, axes, array, kind)
+    volume = read(path)
+    is_byte = dtype == "i1"
+    assert (volume.min, volume.max) == (-127 if is_byte else 0, 26)
+    assert any("1 of 27 samples contain no data" in note for note in volume.notes) != is_byte
+    if dtype != "i4":  # that number would make the samples labels
+        # A variable's own value is in place of it.
+        grid_file(path, axes, array, kind, fill_value=5)
+        assert read(path).array[1, 1, 1] == np.float32(fill)
+
+
+def test_netcdf_labels_keep_their_numbers_beside_fill_values(tmp_path):
+    path = str(tmp_path / "a.nc")
+    array = np.repeat(np.array([2**24 + 1, 2**24 + 3, 2**24 + 5], "i4"), 16).reshape(3, 4, 4)
+    array[2, 3, 3] = -2147483647
+    grid_file(path, {name: ({}, list(range(n))) for name, n in zip("zyx", array.shape)}, array)
+    volume = read(path)
+    assert [label.number for label in volume.labels] == [2**24 + 1, 2**24 + 3, 2**24 + 5]

@@ -188,6 +188,17 @@ char letter_of(const Variable* coordinates, const std::string& dim_name) {
     return name == "time" || name == "t" ? 't' : '?';
 }
 
+// Whether greater coordinates are farther down: CF's attribute says so, or units of pressure.
+bool points_down(const Variable& coordinates) {
+    const std::string positive = lower(text_of_attribute(coordinates, "positive"));
+    if (!positive.empty()) return positive == "down";
+    const std::string unit = lower(text_of_attribute(coordinates, "units"));
+    for (const std::string_view pressure : {"pa", "hpa", "kpa", "pascal", "hectopascal", "bar", "mbar", "millibar",
+                                            "mb", "dbar", "decibar", "atm", "atmosphere"})
+        if (unit == pressure || unit == std::string(pressure) + "s") return true;
+    return false;
+}
+
 struct AxisPlace {
     double first = 0, step = 1;
     std::string unit;
@@ -206,18 +217,22 @@ AxisPlace place_of_axis(const std::string& path, const NetcdfFile& file, const V
     for (const double value : values)
         if (!std::isfinite(value)) fail("{}: {}: a coordinate is {}", path, coordinates->name, value);
     place.known = true;
+    if (points_down(*coordinates))
+        for (double& value : values)
+            value = -value;
     place.first = values[0];
     if (count == 1) return place;
     place.step = (values.back() - values.front()) / static_cast<double>(count - 1);
     const double largest = std::max(std::abs(values.front()), std::abs(values.back()));
     const double rounding = coordinates->type == NC_DOUBLE ? 1e-12 : 1e-6;
+    const double sign = points_down(*coordinates) ? -1 : 1;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double even = place.first + place.step * static_cast<double>(i);
         if (!(std::abs(values[i] - even) <= 1e-3 * std::abs(place.step) + rounding * largest) || place.step == 0)
             fail(
                 "{}: {}: uneven coordinates: {} where {:.9g} would be even; interpolate them to even ones, or choose a "
                 "variable with even ones",
-                path, coordinates->name, values[i], even);
+                path, coordinates->name, sign * values[i], sign * even);
     }
     return place;
 }
@@ -241,7 +256,8 @@ void set_netcdf_place(const std::string& path, const NetcdfFile& file, const std
         const int column = static_cast<int>(i), row = axes.world.at(i);
         const bool used = i < count && (lengths || alike);
         const double scale = used && lengths ? *millimetres_in(places.at(i).unit) : 1;
-        steps[column][row] = used ? places.at(i).step * scale : 1;
+        // Without a common unit, the axes keep their directions: latitudes often descend.
+        steps[column][row] = used ? places.at(i).step * scale : std::copysign(1, places.at(i).step);
         origin[row] = used ? places.at(i).first * scale : 0;
         if (i < count && places.at(i).known && !lengths)
             volume.length_unit +=
@@ -257,6 +273,35 @@ void set_netcdf_place(const std::string& path, const NetcdfFile& file, const std
             fmt::format("The axes have no common unit of length ({}): 1 x 1 x 1 mm is assumed; give "
                         "--spacing X Y Z.",
                         volume.length_unit));
+}
+
+// The value of samples that were never written, if the variable declares none of its own; bytes have no such value.
+std::optional<double> default_fill(const Variable& variable) {
+    for (const char* declared : {"_FillValue", "valid_range", "valid_min", "valid_max"})
+        if (!numbers_of_attribute(variable, declared).empty()) return std::nullopt;
+    int unfilled = 0;
+    if (nc_inq_var_fill(variable.group, variable.id, &unfilled, nullptr) != NC_NOERR || unfilled != 0)
+        return std::nullopt;
+    switch (variable.type) {
+        case NC_SHORT:
+            return NC_FILL_SHORT;
+        case NC_USHORT:
+            return NC_FILL_USHORT;
+        case NC_INT:
+            return NC_FILL_INT;
+        case NC_UINT:
+            return NC_FILL_UINT;
+        case NC_INT64:
+            return static_cast<double>(NC_FILL_INT64);
+        case NC_UINT64:
+            return static_cast<double>(NC_FILL_UINT64);
+        case NC_FLOAT:
+            return NC_FILL_FLOAT;
+        case NC_DOUBLE:
+            return NC_FILL_DOUBLE;
+        default:
+            return std::nullopt;
+    }
 }
 
 // Samples outside of valid_min, valid_max and valid_range, or equal to a missing value, contain no data.
@@ -362,6 +407,7 @@ Volume load_netcdf(const std::string& path, const LoadOptions& options) {
         fail("{}: {}: scale_factor {} and add_offset {}, expected finite numbers, the first not 0", path, variable.name,
              stored.slope, stored.intercept);
     stored.fill = one("_FillValue");
+    if (!stored.fill) stored.fill = default_fill(variable);
     if (stored.fill && is_unsigned == "true" && *stored.fill < 0)
         stored.fill = *stored.fill + std::ldexp(1.0, static_cast<int>(8 * size_of(type)));
     take_samples(stored, volume);

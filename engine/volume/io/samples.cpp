@@ -63,6 +63,11 @@ std::uint64_t magnitude(T value) {
     return static_cast<std::uint64_t>(value);
 }
 
+template <typename T>
+bool is_fill(const StoredSamples& stored, T value) {
+    return stored.fill && static_cast<double>(value) == *stored.fill;
+}
+
 /// Sets labels and ranks if some integers exceed `kExact` and there are few distinct ones. Returns whether it did.
 template <typename T>
 bool take_ranks(const StoredSamples& stored, Volume& volume) {
@@ -71,6 +76,7 @@ bool take_ranks(const StoredSamples& stored, Volume& volume) {
     bool large = false;
     for (std::size_t i = 0; i < count; ++i) {
         const T value = stored_at<T>(stored, i);
+        if (is_fill(stored, value)) continue;
         large = large || magnitude(value) > kExact;
         if (found.size() <= kMaxRankedLabels) found.insert(value);
     }
@@ -85,8 +91,10 @@ bool take_ranks(const StoredSamples& stored, Volume& volume) {
                                  .name = {},
                                  .color = {}});
     for (std::size_t i = 0; i < count; ++i) {
-        const auto at = std::lower_bound(ids.begin(), ids.end(), stored_at<T>(stored, i));
-        volume.values[i] = static_cast<float>(at - ids.begin());
+        const T value = stored_at<T>(stored, i);
+        const auto at = std::lower_bound(ids.begin(), ids.end(), value);
+        volume.values[i] =
+            is_fill(stored, value) ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(at - ids.begin());
     }
     volume.labels = std::move(table);
     return true;
@@ -103,7 +111,7 @@ double scale_for(const StoredSamples& stored, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             const auto value = static_cast<double>(stored_at<T>(stored, i));
             const double size = std::abs(stored.slope * value + stored.intercept);
-            if (size > largest && size <= kLargest && !(stored.fill && value == *stored.fill)) largest = size;
+            if (size > largest && size <= kLargest && !is_fill(stored, value)) largest = size;
         }
     });
     const bool fits = largest <= kHeld && largest >= kSmallest;
@@ -116,8 +124,10 @@ bool loses_digits(const StoredSamples& stored, std::size_t count) {
     for_type(stored.type, [&](auto example) {
         using T = decltype(example);
         if constexpr (std::is_integral_v<T> && sizeof(T) >= 4)
-            for (std::size_t i = 0; i < count && !loses; ++i)
-                loses = magnitude(stored_at<T>(stored, i)) > kExact;
+            for (std::size_t i = 0; i < count && !loses; ++i) {
+                const T value = stored_at<T>(stored, i);
+                loses = magnitude(value) > kExact && !is_fill(stored, value);
+            }
     });
     return loses;
 }
@@ -132,8 +142,7 @@ void convert_stored(const StoredSamples& stored, std::size_t count, float* targe
             const T value = stored_at<T>(stored, i);
             target[i] = scaled ? static_cast<float>(stored.slope * static_cast<double>(value) + stored.intercept)
                                : static_cast<float>(value);
-            if (stored.fill && static_cast<double>(value) == *stored.fill)
-                target[i] = std::numeric_limits<float>::quiet_NaN();
+            if (is_fill(stored, value)) target[i] = std::numeric_limits<float>::quiet_NaN();
         }
     });
 }
@@ -142,7 +151,7 @@ void take_samples(const StoredSamples& stored, Volume& volume) {
     const std::size_t count = volume.geometry.voxel_count();
     volume.values.resize(count);
     if (volume.stored_type.empty()) volume.stored_type = name_of(stored.type);
-    const bool plain = stored.slope == 1 && stored.intercept == 0 && !stored.fill;
+    const bool plain = stored.slope == 1 && stored.intercept == 0;
     if (plain && loses_digits(stored, count)) {
         bool ranked = false;
         for_type(stored.type, [&](auto example) {
