@@ -3,6 +3,7 @@ byte, whose right values follow from TIFF's definition."""
 
 import random
 import struct
+import warnings
 
 import numpy as np
 import pytest
@@ -226,6 +227,30 @@ def test_ome_companion(tmp_path):
         Volume(tmp_path / "a.tif")
 
 
+def test_ome_pixels_beside_lengths(tmp_path):
+    """Axes in pixels cannot be drawn beside axes in a unit of length."""
+    path = tmp_path / "a.ome.tif"
+
+    def write(**units):
+        sizes = {f"PhysicalSize{axis}": size for axis, size in zip("XYZ", (2, 3, 4))}
+        tifffile.imwrite(path, STACK, ome=True, photometric="minisblack",
+                         metadata={"axes": "ZYX", **sizes, **{f"PhysicalSize{axis}Unit": unit for axis, unit in units.items()}})
+
+    for axis, unit in (("Z", "reference frame"), ("Z", "pixel"), ("Y", "pixel")):
+        write(**{axis: unit})
+        with pytest.raises(Error, match=f"PhysicalSize{axis}Unit='{unit}', but PhysicalSize.Unit='µm'.*--spacing X Y Z"):
+            Volume(path)
+        check(Volume(path, spacing=(1, 2, 3)), STACK, (1, 2, 3))
+    write(X="pixel", Y="pixel", Z="pixel")
+    check(Volume(path), STACK, (2, 3, 4))
+
+
+def test_ome_pages_beyond_its_planes(tmp_path):
+    path = write_pages(tmp_path / "a.tif", np.concatenate([STACK, STACK[:1]]), ome("<TiffData/>"))
+    with pytest.warns(UserWarning, match="OME-XML describes 3 planes, but the file has 4 pages"):
+        assert Volume(path).shape == STACK.shape
+
+
 def test_ome_with_missing_planes(tmp_path):
     path = write_pages(tmp_path / "a.tif", STACK[:2], ome('<TiffData IFD="0" FirstZ="0"/><TiffData IFD="1" FirstZ="2"/>'))
     with pytest.warns(UserWarning, match="20 samples contain no data"):
@@ -419,6 +444,8 @@ CALIBRATIONS = [
     (b"cf=0\nc0=-32768\nc1=1\n", 2, (0, 1, 1000)),  # ImageJ holds signed samples with an offset of 32768
     (b"cf=1\nc0=1\nc1=2\nc2=0.25\n", 1, (1, 3.25, 252001)),
     (b"cf=4\nc0=1\nc1=2\n", 1, (0, 1, 1000)),  # not a polynomial: a warning
+    (b"cf=21\nvunit=Uncalibrated OD\n", 1, (0, 1, 1000)),  # a function without coefficients: a warning
+    (b"cf=20\n", 1, (0, 1, 1000)),  # none
 ]
 
 
@@ -427,7 +454,11 @@ def test_imagej_calibration(tmp_path, text, kind, right):
     path = tmp_path / "a.tif"
     pixels = np.array([[0, 1, 1000]], "<u2").tobytes()
     path.write_bytes(own_tiff(pixels, 3, 1, 16, text=b"ImageJ=1.53t\nimages=1\n" + text, kind=kind))
-    assert list(Volume(path).array.flat) == list(right)
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always")
+        assert list(Volume(path).array.flat) == list(right)
+    is_applicable = not text.startswith((b"cf=4\n", b"cf=21\n"))
+    assert any("is not a polynomial and not applied" in str(one.message) for one in given) != is_applicable
 
 
 @pytest.mark.parametrize(
@@ -438,6 +469,8 @@ def test_imagej_calibration(tmp_path, text, kind, right):
         (b"images=2\nslices=2\nspacing=inf\n", "spacing: inf: expected a length above 0"),
         (b"images=2\nslices=2\nspacing=2,8\n", "spacing=2,8: expected a number"),
         (b"images=2\nslices=2\nunit=furlong\n", "unit=furlong: expected a unit of length"),
+        (b"images=2\nslices=2\nunit=um\nzunit=pixel\nspacing=2\n", "zunit=pixel, but unit=um: expected units of length"),
+        (b"images=2\nslices=2\nunit=pixel\nzunit=um\nspacing=2\n", "zunit=um, but unit=pixel: expected units of length"),
         (b"images=0\n", "images=0: expected a whole number of at least 1"),
         (b"images=9\nslices=9\n", "truncated: its header promises 9 images"),
         (b"images=99999999\n", "99999999"),
@@ -494,6 +527,43 @@ def test_pages_that_differ(tmp_path):
         Volume(path)
     assert Volume(path, series=0).shape == (2, 4, 5)
     assert Volume(path, series=1).shape == (1, 2, 2)
+
+
+#: World axes of columns and rows: x to the right, y down.
+ORIENTATIONS = {1: ("+x", "+y"), 2: ("-x", "+y"), 3: ("-x", "-y"), 4: ("+x", "-y"),
+                5: ("+y", "+x"), 6: ("+y", "-x"), 7: ("-y", "-x"), 8: ("-y", "+x")}
+
+
+@pytest.mark.parametrize("orientation", ORIENTATIONS)
+def test_orientation(tmp_path, orientation):
+    path = tmp_path / "a.tif"
+    with tifffile.TiffWriter(path) as writer:
+        for page in STACK:
+            writer.write(page, photometric="minisblack", metadata=None, contiguous=False, resolution=(5000, 2500),
+                         resolutionunit="CENTIMETER", extratags=[(274, "H", 1, orientation, True)])
+    volume = Volume(path)
+    assert np.array_equal(volume.array, STACK.astype(np.float32))
+    assert volume.spacing == pytest.approx((2e-3, 4e-3, 2e-3))
+    directions = [(1 if name[0] == "+" else -1) * np.eye(3)["xyz".index(name[1])] for name in ORIENTATIONS[orientation]]
+    assert np.allclose(volume.direction, np.transpose([*directions, [0, 0, 1]]))
+    # The first voxel is in the corner that the field names.
+    corner = [np.minimum(d, 0) * step * (n - 1) for d, step, n in zip(directions, (2e-3, 4e-3), STACK.shape[:0:-1])]
+    assert volume.origin == pytest.approx(tuple(-sum(corner)), abs=1e-9)
+
+
+def test_orientations_and_resolutions_that_differ(tmp_path):
+    path = tmp_path / "a.tif"
+    for field, options, message in (
+        ("Orientation", [{"extratags": [(274, "H", 1, o, True)]} for o in (1, 1, 3)], r"Orientation \(274\) 3"),
+        ("XResolution", [{"resolution": (r, r), "resolutionunit": "CENTIMETER"} for r in (50, 50, 20)],
+         r"XResolution 20 and YResolution 20 \(ResolutionUnit 3\), the slices before it 50 and 50.*--spacing"),
+    ):
+        with tifffile.TiffWriter(path) as writer:
+            for page, own in zip(STACK, options):
+                writer.write(page, photometric="minisblack", metadata=None, contiguous=False, **own)
+        with pytest.raises(Error, match=f"page 2 .*{message}"):
+            Volume(path)
+    check(Volume(path, spacing=(1, 2, 3)), STACK, (1, 2, 3))
 
 
 def test_reduced_pages_are_left_out(tmp_path):

@@ -3,6 +3,7 @@
 #include "engine/volume/io/tiff.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -28,6 +29,7 @@ struct TiffPlace {
     glm::dvec3 spacing{0};
     glm::dvec3 origin{0};  ///< mm
     std::string source, unit;
+    bool is_of_pages = false;  ///< every page says the spacing of its pixels
 };
 
 /// What is read: the planes of the chosen component and frame.
@@ -74,6 +76,15 @@ std::string shape_of(const TiffFile& file, const TiffPage& page) {
 bool is_same_shape(const TiffPage& a, const TiffPage& b) {
     return a.width == b.width && a.height == b.height && a.samples == b.samples && a.bits == b.bits &&
            a.format == b.format && a.photometric == b.photometric;
+}
+
+/// Whether pages have the same distances of pixels, or one of them says nothing.
+bool is_same_resolution(const TiffPage& a, const TiffPage& b) {
+    const auto is_silent = [](const TiffPage& page) { return page.x_resolution == 0 && page.y_resolution == 0; };
+    const auto is_near = [](double x, double y) { return std::abs(x - y) <= 1e-4 * std::abs(x); };
+    return is_silent(a) || is_silent(b) ||
+           (is_near(a.x_resolution, b.x_resolution) && is_near(a.y_resolution, b.y_resolution) &&
+            a.resolution_unit == b.resolution_unit);
 }
 
 /// Fails unless the page's pixels can be read.
@@ -153,6 +164,7 @@ TiffPlace plain_place(const TiffPage& page, std::vector<std::string>& notes) {
         return place;
     }
     place.spacing = {millimetres / x, millimetres / y, 0};
+    place.is_of_pages = true;
     place.source = "XResolution, YResolution";
     place.unit = is_inch ? "inch" : "cm";
     return place;
@@ -234,9 +246,12 @@ TiffPlace imagej_place(const std::string& path, const LoadOptions& options, cons
     const char* const units[] = {"unit", "yunit", "zunit"};
     const char* const origins[] = {"xorigin", "yorigin", "zorigin"};
     for (int axis = 0; axis < 3; ++axis) {
-        double scale = millimetres.value_or(1);
-        const std::string own = axis == 0 ? "" : text(units[axis]);
-        if (!own.empty()) scale = imagej_millimetres(path, options, own).value_or(1);
+        const std::string named = axis == 0 ? "" : text(units[axis]), own = named.empty() ? unit : named;
+        const auto of_axis = imagej_millimetres(path, options, own);
+        if (size[axis] != 0 && of_axis.has_value() != millimetres.has_value() && !options.spacing)
+            fail("{}: ImageJ's {}={}, but unit={}: expected units of length or none; give --spacing X Y Z", path,
+                 units[axis], own, unit);
+        const double scale = of_axis.value_or(1);
         if (size[axis] != 0)
             place.spacing[axis] = tiff_length(path, options,
                                               axis == 0   ? "XResolution"
@@ -266,7 +281,8 @@ void imagej_calibration(TiffStack& stack, const std::string& path, const TiffPag
         if (!std::isfinite(coefficients.back()))
             fail("{}: ImageJ's {}={}: expected a number", path, found->first, found->second);
     }
-    if (coefficients.empty()) return;
+    constexpr double kNoFunction = 20;
+    if (kind == kNoFunction || (coefficients.empty() && kind <= 3)) return;
     if (page.format == 3) {
         stack.notes.emplace_back("ImageJ's calibration is not applied to floats, as ImageJ does not.");
         return;
@@ -278,6 +294,7 @@ void imagej_calibration(TiffStack& stack, const std::string& path, const TiffPag
             "ImageJ's calibration function {} is not a polynomial and not applied: values are as stored.", kind));
         return;
     }
+    if (coefficients.empty()) return;
     // ImageJ holds signed numbers of 16 bits with an offset, which the function includes.
     stack.shift = page.format == 2 && page.bits == 16 ? 32768 : 0;
     if (coefficients.size() == 2 && coefficients[1] == 1 && coefficients[0] + stack.shift == 0) return;
@@ -565,24 +582,26 @@ TiffPlace ome_place(const std::string& path, const LoadOptions& options, const O
     TiffPlace place;
     const OmeImage::Length* const lengths[] = {&image.size_x, &image.size_y, &image.size_z};
     const char* const names[] = {"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
-    bool is_without_unit = false;
+    // Lengths, and axes that are measured in pixels.
+    std::optional<std::string> with_unit, without_unit;
     for (int axis = 0; axis < 3; ++axis) {
         const OmeImage::Length& length = *lengths[axis];
         if (length.value.empty()) continue;
         const std::string field = fmt::format("OME-XML: {}", names[axis]);
         const double value = tiff_number(path, field, length.value);
-        auto millimetres = ome_millimetres(length.unit);
-        if (!millimetres && (length.unit == "pixel" || length.unit == "reference frame")) {
-            millimetres = 1;
-            is_without_unit = true;
-        }
-        if (!millimetres && !options.spacing)
+        const auto millimetres = ome_millimetres(length.unit);
+        const bool is_in_pixels = length.unit == "pixel" || length.unit == "reference frame";
+        if (!millimetres && !is_in_pixels && !options.spacing)
             fail("{}: {}Unit='{}': expected a unit of length; give --spacing X Y Z", path, field, length.unit);
+        (is_in_pixels ? without_unit : with_unit) = fmt::format("{}Unit='{}'", names[axis], length.unit);
+        if (with_unit && without_unit && !options.spacing)
+            fail("{}: OME-XML: {}, but {}: expected units of length for all axes; give --spacing X Y Z", path,
+                 *without_unit, *with_unit);
         place.spacing[axis] = tiff_length(path, options, field, value, millimetres.value_or(1));
         if (place.unit.empty()) place.unit = length.unit;
     }
     if (place.spacing != glm::dvec3(0)) place.source = "OME-XML's PhysicalSize";
-    if (is_without_unit) {
+    if (without_unit) {
         place.source += fmt::format(" in '{}': mm assumed", place.unit);
         place.unit.clear();
     }
@@ -680,6 +699,10 @@ void take_ome(TiffStack& stack, const std::string& path, const TiffFilePointer& 
             fail("{}: OME-XML: SizeX='{}' SizeY='{}', but {} has {} x {} pixels", path, image.x, image.y, plane->name(),
                  here.width, here.height);
     }
+    const std::size_t pages = own ? std::ranges::count_if(own->pages(), is_usable) : 0;
+    if (document.images.size() == 1 && image.data.size() <= 1 && first_file == own && pages > total)
+        stack.warnings.push_back(fmt::format(
+            "OME-XML describes {} planes, but the file has {} pages: those beyond are left out.", total, pages));
     if (missing == stack.planes.size()) fail("{}: OME-XML: no TiffData holds the chosen component and frame", path);
     if (missing > 0)
         stack.warnings.push_back(fmt::format("{} of its {} slices are not in the file: they contain no data.", missing,
@@ -809,16 +832,38 @@ void add_page_notes(TiffStack& stack, const TiffPage& page) {
         stack.warnings.emplace_back("A sparse file: some of its strips or tiles are absent, their samples are 0.");
 }
 
+/// World axes of a page's columns and rows, x to the right and y down, by the field Orientation.
+std::array<glm::dvec3, 2> page_directions(std::uint64_t orientation) {
+    const bool is_transposed = orientation >= 5;
+    // From left to right, from top to bottom: where the first row or column is on the other side, against it.
+    const bool from_right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+    const bool from_bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+    const glm::dvec3 across(from_right ? -1 : 1, 0, 0), down(0, from_bottom ? -1 : 1, 0);
+    return is_transposed ? std::array{down, across} : std::array{across, down};
+}
+
 /// Sets the geometry. An unknown distance between slices is assumed to be that of pixels.
-void set_stack_place(Volume& volume, const TiffStack& stack, const LoadOptions& options) {
+void set_stack_place(Volume& volume, const TiffStack& stack, std::uint64_t orientation, const LoadOptions& options) {
     glm::dvec3 spacing = stack.place.spacing;
     const bool is_known = spacing.x > 0 && spacing.y > 0;
     if (!is_known && spacing != glm::dvec3(0) && !options.spacing)
         fail("{}: its header gives the voxel spacing along some axes only ({} x {} x {} mm); give --spacing X Y Z",
              volume.name, spacing.x, spacing.y, spacing.z);
     volume.length_unit = stack.place.unit;
+    // The grid stays in the box that it has without orientation.
+    const auto place = [&](const glm::dvec3& steps, const glm::dvec3& origin, const std::string& source) {
+        const auto directions = page_directions(orientation);
+        const glm::dmat3 axes(directions[0] * steps.x, directions[1] * steps.y, glm::dvec3(0, 0, steps.z));
+        glm::dvec3 first = origin;
+        for (int axis = 0; axis < 2; ++axis)
+            first -= glm::min(axes[axis], 0.0) * static_cast<double>(volume.geometry.dims[axis] - 1);
+        set_place(volume, axes, first, 1, source);
+    };
+    if (orientation != 1)
+        volume.notes.push_back(fmt::format(
+            "Orientation (274) is {}: the directions of its columns and rows are as that field says.", orientation));
     if (!is_known) {
-        set_place(volume, glm::dmat3(1), glm::dvec3(0), 1, "none: 1 mm assumed");
+        place(glm::dvec3(1), glm::dvec3(0), "none: 1 mm assumed");
         if (!options.spacing)
             volume.notes.emplace_back(
                 "The header does not contain a voxel spacing: 1 x 1 x 1 mm is assumed; give --spacing X Y Z.");
@@ -838,7 +883,7 @@ void set_stack_place(Volume& volume, const TiffStack& stack, const LoadOptions& 
     if (stack.place.source.empty() && !options.spacing)
         volume.notes.emplace_back(
             "The header does not contain a unit of length: 1 x 1 x 1 mm is assumed; give --spacing X Y Z.");
-    set_place(volume, glm::dmat3(spacing.x, 0, 0, 0, spacing.y, 0, 0, 0, spacing.z), stack.place.origin, 1, source);
+    place(spacing, stack.place.origin, source);
 }
 
 void read_stack_samples(Volume& volume, const TiffStack& stack, const TiffPlane& first, SampleType type,
@@ -898,6 +943,15 @@ Volume load_tiff(const std::string& name, const std::vector<std::string>& files,
         if (!is_same_shape(here, page))
             fail("{}: {} has {}; the slices before it {}", name, plane->name(), shape_of(*plane->file, here),
                  shape_of(*first->file, page));
+        if (here.orientation != page.orientation)
+            fail("{}: {} has Orientation (274) {}, the slices before it {}", name, plane->name(), here.orientation,
+                 page.orientation);
+        if (stack.place.is_of_pages && !options.spacing && !is_same_resolution(here, page))
+            fail(
+                "{}: {} has XResolution {} and YResolution {} (ResolutionUnit {}), the slices before it {} and "
+                "{} ({}); give --spacing X Y Z",
+                name, plane->name(), here.x_resolution, here.y_resolution, here.resolution_unit, page.x_resolution,
+                page.y_resolution, page.resolution_unit);
         stored += plane->raw_at ? page.width * page.height * 8 : std::min(here.stored, plane->file->size());
     }
     const std::size_t slices = stack.planes.size();
@@ -914,7 +968,7 @@ Volume load_tiff(const std::string& name, const std::vector<std::string>& files,
     volume.notes = stack.notes;
     volume.warnings = stack.warnings;
     if (slices == 1) volume.notes.emplace_back("The file holds one image: it is read as a volume of one slice.");
-    set_stack_place(volume, stack, options);
+    set_stack_place(volume, stack, page.orientation, options);
     read_stack_samples(volume, stack, *first, type, options);
     return volume;
 }

@@ -21,6 +21,7 @@ enum TiffTag : std::uint16_t {
     kPhotometric = 262,
     kImageDescription = 270,
     kStripOffsets = 273,
+    kOrientation = 274,
     kSamplesPerPixel = 277,
     kRowsPerStrip = 278,
     kStripByteCounts = 279,
@@ -266,6 +267,9 @@ class TiffDirectoryReader {
                 break;
             case kYResolution:
                 page.y_resolution = resolution(field);
+                break;
+            case kOrientation:
+                page.orientation = first_number(field);
                 break;
             case kResolutionUnit:
                 page.resolution_unit = first_number(field);

@@ -31,6 +31,7 @@ struct TiffPage {
     bool is_reduced = false, is_mask = false, is_geo = false, is_metamorph = false;
     double x_resolution = 0, y_resolution = 0;  ///< pixels per unit; 0: not given
     std::uint64_t resolution_unit = 2;          ///< 1: none, 2: inch, 3: cm
+    std::uint64_t orientation = 1;              ///< where the first row and column are
     std::vector<std::string> descriptions;
     std::string no_data, gdal_metadata;  ///< GDAL's fields; empty: not given
     std::optional<TiffField> lsm;
