@@ -167,6 +167,32 @@ TEST_F(Dicom, LeavesOutDuplicatesAndLocalizers) {
     EXPECT_EQ(load_volume(folder_.string(), {.series = "0"}).geometry.dims.z, 3);
 }
 
+TEST_F(Dicom, NamesSlicesThatAreNoDicomFiles) {
+    for (int z = 0; z < 3; ++z)
+        write_data(fmt::format("i{}.dcm", z), slice(2 * z, 10 * z));
+    const std::string last = slice(6, 30).file();
+    for (const auto& [content, shown] :
+         std::vector<std::pair<std::string, std::string>>{{"", "i3.dcm (empty)"},
+                                                          {last.substr(0, 100), "i3.dcm"},
+                                                          {std::string(last.size(), '\0'), "i3.dcm"},
+                                                          {"<html>404</html>", "i3.dcm"},
+                                                          {"version https://git-lfs.github.com/spec/v1\n", "i3.dcm"}}) {
+        write("i3.dcm", content);
+        write("README", "text");
+        write("notes.txt", "");
+        const auto volume = load_volume(folder_.string());
+        EXPECT_EQ(volume.geometry.dims.z, 3);
+        EXPECT_THAT(volume.warnings, testing::ElementsAre(HasSubstr("named like them: " + shown + ".")));
+        EXPECT_THAT(volume.notes, Contains("2 other files in the folder were ignored."));
+    }
+    // Names without extension, in a folder inside.
+    fs::create_directory(folder_ / "series");
+    for (int z = 0; z < 4; ++z)
+        fs::rename(file(fmt::format("i{}.dcm", z)), folder_ / "series" / fmt::format("IM{}", z));
+    fs::rename(file("README"), folder_ / "series" / "README");
+    EXPECT_THAT(load_volume(folder_.string()).warnings, testing::ElementsAre(HasSubstr("named like them: IM3.")));
+}
+
 TEST_F(Dicom, NamesWhatIsNoVolume) {
     DicomData structures;
     structures.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3").text(0x00080060, "CS", "RTSTRUCT");

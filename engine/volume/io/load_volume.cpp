@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <set>
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/io/hdf5.h"
@@ -191,6 +192,52 @@ MemberKind member_kind(const std::string& path) {
     return is_compressed(head) || is_archive(path, head) ? MemberKind::Volume : MemberKind::Other;
 }
 
+/// What files of one series have in common in their names: the extension, else the name without numbers.
+std::string kind_of_name(const std::string& path) {
+    const auto in_lower_case = [](std::string text) {
+        std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return text;
+    };
+    const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+    const std::string extension = fs::path(path).extension().string();
+    if (std::ranges::any_of(extension, [](unsigned char c) { return std::isalpha(c) != 0; }))
+        return in_lower_case(extension);
+    std::string name = fs::path(path).filename().string();
+    std::erase_if(name, is_digit);
+    return in_lower_case(name);
+}
+
+/// Takes those files that are named as the DICOM files are, but are none, out of the others; warns of them.
+std::vector<std::string> warnings_of_lost_slices(const std::vector<std::string>& dicom,
+                                                 std::vector<std::string>& others) {
+    std::set<std::string> kinds;
+    for (const std::string& file : dicom)
+        kinds.insert(kind_of_name(file));
+    std::vector<std::string> lost;
+    std::erase_if(others, [&](const std::string& file) {
+        if (!kinds.contains(kind_of_name(file))) return false;
+        std::error_code error;
+        lost.push_back(fs::path(file).filename().string() + (fs::file_size(file, error) == 0 ? " (empty)" : ""));
+        return true;
+    });
+    if (lost.empty()) return {};
+    std::ranges::sort(lost);
+    constexpr std::size_t kShown = 8;
+    const std::size_t shown = std::min(lost.size(), kShown), rest = lost.size() - shown;
+    lost.resize(shown);
+    return {fmt::format("Left out, as no DICOM files although named like them: {}{}.", fmt::join(lost, ", "),
+                        rest > 0 ? fmt::format(" and {} more", rest) : "")};
+}
+
+/// Reads the DICOM files among the others.
+Volume load_dicom_among(const std::string& path, const std::vector<std::string>& dicom,
+                        std::vector<std::string>& others, const LoadOptions& options) {
+    const auto warnings = warnings_of_lost_slices(dicom, others);
+    Volume volume = load_dicom(path, dicom, options);
+    volume.warnings.insert(volume.warnings.end(), warnings.begin(), warnings.end());
+    return named(std::move(volume), "DICOM");
+}
+
 // `depth`: archives and compressed files around the unpacked file.
 ArchiveLoader archive_loader(int depth) {
     return {.kind = member_kind,
@@ -199,13 +246,13 @@ ArchiveLoader archive_loader(int depth) {
                     check_readable_file(path);
                     return load_file(path, options, depth);
                 }
-                std::vector<std::string> dicom;
+                std::vector<std::string> dicom, others;
                 for (const fs::path& file : files)
-                    if (file.string().starts_with(path + "/") && member_kind(file.string()) == MemberKind::Dicom)
-                        dicom.push_back(file.string());
+                    if (file.string().starts_with(path + "/"))
+                        (member_kind(file.string()) == MemberKind::Dicom ? dicom : others).push_back(file.string());
                 if (dicom.empty()) return load_folder(path, options);
                 refuse_inner(path, options, "a folder of slices");
-                return load_dicom(path, dicom, options);
+                return load_dicom_among(path, dicom, others, options);
             }};
 }
 
@@ -258,8 +305,8 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
         path, kind.empty() ? "" : ": ", kind, format_names());
 }
 
-/// DICOM files in the folders inside: a study often has a folder per series.
-std::vector<std::string> dicom_files_below(const std::string& path) {
+/// DICOM files in the folders inside: a study often has a folder per series. `others`: the other files there.
+std::vector<std::string> dicom_files_below(const std::string& path, std::vector<std::string>& others) {
     constexpr int kDeepest = 6;
     constexpr std::size_t kMostFiles = 65535;
     std::vector<std::string> found;
@@ -272,7 +319,8 @@ std::vector<std::string> dicom_files_below(const std::string& path) {
         if (!at->is_regular_file(error) || name.starts_with(".") || name == "DICOMDIR") continue;
         if (++looked_at > kMostFiles)
             fail("{}: its folders have more than {} files; give the folder of one series", path, kMostFiles);
-        if (at->file_size(error) > 0 && is_dicom(at->path().string())) found.push_back(at->path().string());
+        const bool is_one = at->file_size(error) > 0 && is_dicom(at->path().string());
+        (is_one ? found : others).push_back(at->path().string());
     }
     std::ranges::sort(found);
     return found;
@@ -283,8 +331,8 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     refuse_inner(path, options, "a folder of slices");
     if (is_zarr_folder(path)) return named(load_zarr(path, options), "Zarr");
     refuse_level(path, options);
-    std::vector<std::string> dicom, images;
-    std::size_t others = 0, folders = 0;
+    std::vector<std::string> dicom, images, others, others_below;
+    std::size_t folders = 0;
     report(options, 0.0, "searching the folder");
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(path, error)) {
@@ -297,7 +345,7 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
         else if (ends_with_any(file, kImageNames))
             images.push_back(file);
         else
-            ++others;
+            others.push_back(file);
     }
     if (error) fail("{}: cannot be read: {}", path, error.message());
     if (!dicom.empty() && !images.empty())
@@ -306,23 +354,23 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
             "as slice_%03d.png",
             path, dicom.size(), images.size());
     std::vector<std::string> notes;
-    if (others > 0) notes.push_back(fmt::format("{} other files in the folder were ignored.", others));
     Volume volume;
     if (!dicom.empty()) {
-        volume = named(load_dicom(path, dicom, options), "DICOM");
+        volume = load_dicom_among(path, dicom, others, options);
     } else if (!images.empty()) {
         images = ordered_slices(path, images, notes);
         volume = named(load_images(path, images, options), "images");
-    } else if (const auto below = folders > 0 ? dicom_files_below(path) : std::vector<std::string>(); !below.empty()) {
-        volume = named(load_dicom(path, below, options), "DICOM");
+    } else if (folders > 0 && !(dicom = dicom_files_below(path, others_below)).empty()) {
+        volume = load_dicom_among(path, dicom, others_below, options);
     } else {
         if (fs::exists(fs::path(path) / "attributes.json"))
             fail("{}: an N5 container, which is not read; convert it to OME-Zarr", path);
         fail(
             "{}: no DICOM files and no images in this folder ({} other files, {} folders inside); give a file or one "
             "of its folders",
-            path, others, folders);
+            path, others.size(), folders);
     }
+    if (!others.empty()) notes.push_back(fmt::format("{} other files in the folder were ignored.", others.size()));
     volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
     return volume;
 }
