@@ -155,6 +155,10 @@ TEST_F(NrrdFiles, RefusesHeadersThatContradict) {
         {"data file: a.nrrd\n", "the header itself"},
         {"data file: missing.raw\n", "missing.raw does not exist"},
         {"hello\n", "neither 'field: value'"},
+        {"space dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspacings: nan 2 nan\n",
+         "'spacings': axis 1 has a number and one of 'space directions'"},
+        {"space dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\naxis mins: 5 nan nan\n",
+         "'axis mins': axis 0 has a number and one of 'space directions'"},
     };
     for (const auto& [fields, reason] : cases)
         EXPECT_THAT(refusal(nrrd(fields)), AllOf(HasSubstr("a.nrrd"), HasSubstr(reason))) << fields;
@@ -164,6 +168,13 @@ TEST_F(NrrdFiles, RefusesHeadersThatContradict) {
                 HasSubstr("'block' cannot be read"));
     EXPECT_THAT(refusal(with("type: uchar\ndimension: 2\nsizes: 2 2 2\nencoding: raw\n", "12345678")),
                 HasSubstr("'sizes': 3 values, expected 2"));
+    EXPECT_EQ(
+        load_volume(nrrd("space dimension: 3\nspace directions: (1,0,0) (0,2,0) (0,0,1)\nspacings: nan nan nan\n"))
+            .geometry.spacing(),
+        glm::dvec3(1, 2, 1));
+    for (const char* cut : {"type: uchar\ndimension: 3", "type: short\ndimension: 3\nsizes: 2 2 2\nencoding: raw"})
+        EXPECT_THAT(refusal(write("cut.nrrd", std::string("NRRD0005\n") + cut)),
+                    HasSubstr("truncated: its NRRD header does not end with an empty line"));
     EXPECT_THAT(load_volume(nrrd("space:=LPS\nfoo: bar\n")).warnings,
                 ElementsAre(HasSubstr("'space:='"), HasSubstr("'foo: bar' is no field")));
     EXPECT_THAT(load_volume(write("long.nrrd", content_of(nrrd("")) + std::string(17, '9'))).warnings,
@@ -195,6 +206,14 @@ TEST_F(NrrdFiles, ReadsSlicerSegmentations) {
     const Volume second = load_volume(layers, {.component = 1});
     EXPECT_THAT(second.values, ElementsAre(0, 1, 1, 0, 0, 0, 0, 0));
     EXPECT_EQ(second.labels->labels[1].name, "tumour");
+    // A deleted segment leaves a hole in the numbers.
+    const Volume holed = load_volume(
+        with(head + "dimension: 3\nsizes: 2 2 2\nSegment0_Name:=a\nSegment0_LabelValue:=3\n"
+                    "Segment7_Name:=b\nSegment7_LabelValue:=5\nSegment12_Name:=c\nSegment12_LabelValue:=5\n",
+             {"\0\3\3\0\0\5\0\0", 8}));
+    EXPECT_EQ(holed.labels->labels[1].name, "a");
+    EXPECT_EQ(holed.labels->labels[2].name, "c");
+    EXPECT_THAT(holed.warnings, ElementsAre(HasSubstr("'b' and 'c' have the same LabelValue 5")));
 }
 
 TEST_F(NrrdFiles, KeepsLargeIdsWithTheirNames) {

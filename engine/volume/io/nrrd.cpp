@@ -168,8 +168,6 @@ class NrrdReading {
         if (detached) {
             take_file_names();
         } else {
-            if (header_.bytes == 0)
-                fail("{}: truncated: its header has no end, and it names no data file", header_.path);
             data.offset = header_.bytes;
             data.files = {file};
         }
@@ -286,6 +284,12 @@ class NrrdReading {
         if (direction) {
             if (std::ranges::any_of(*direction, [](double c) { return std::isnan(c); }))
                 header_.refuse("spacedirections", fmt::format("the direction of axis {} is not a number", i));
+            // As NRRD's own library: which of the two would hold is not defined.
+            for (const char* other : {"spacings", "axismins", "axismaxs"})
+                if (!std::isnan(header_.numbers(other, sizes_.size())[i]))
+                    header_.refuse(other, fmt::format("axis {} has a number and one of 'space directions', expected "
+                                                      "nan",
+                                                      i));
             axes_[i] = NrrdAxis::Space;
         } else if (axes_[i] != NrrdAxis::Component) {
             axes_[i] = NrrdAxis::Frame;

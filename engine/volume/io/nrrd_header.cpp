@@ -233,6 +233,8 @@ NrrdHeader nrrd_header(const std::string& path, const std::string& file) {
     }
     if (in.fail() && !in.eof()) fail("{}: a line of its NRRD header is longer than {} MiB", path, kMaxNrrdLine >> 20);
     if (!line.empty()) header.bytes = 0;  // no blank line: no attached data
+    if (header.bytes == 0 && !header.has("datafile"))
+        fail("{}: truncated: its NRRD header does not end with an empty line, and it names no data file", path);
     return header;
 }
 

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "engine/image/srgb.h"
 #include "engine/volume/io/nrrd_header.h"
@@ -34,10 +36,18 @@ std::optional<glm::dvec3> segment_color(const std::string& text) {
 std::vector<std::vector<Label>> nrrd_segments(const NrrdHeader& header) {
     std::vector<std::vector<Label>> layers;
     const auto& pairs = header.key_values;
-    for (std::size_t i = 0; i < kMaxSegments; ++i) {
-        const auto prefix = fmt::format("Segment{}_", i);
-        const auto first = pairs.lower_bound(prefix);
-        if (first == pairs.end() || !first->first.starts_with(prefix)) break;
+    // Numbers may be missing where a segment was deleted.
+    std::set<std::size_t> numbers;
+    constexpr std::string_view kStart = "Segment";
+    for (const auto& [key, value] : pairs) {
+        std::size_t number = 0;
+        const char* const begin = key.data() + kStart.size();
+        if (!key.starts_with(kStart)) continue;
+        const auto [end, error] = std::from_chars(begin, key.data() + key.size(), number);
+        if (error == std::errc() && *end == '_' && number < kMaxSegments) numbers.insert(number);
+    }
+    for (const std::size_t i : numbers) {
+        const auto prefix = fmt::format("{}{}_", kStart, i);
         const auto text = [&](const char* name) {
             const auto found = pairs.find(prefix + name);
             return found == pairs.end() ? "" : trimmed(found->second);
@@ -95,7 +105,13 @@ void name_segments(const std::vector<Label>& segments, Volume& volume) {
         table->is_signed = !values.empty() && values.front() < 0;
     }
     std::string empty;
+    std::map<std::uint64_t, std::string> names;
     for (const Label& segment : segments) {
+        const auto [first, is_new] = names.emplace(segment.id, segment.name);
+        if (!is_new)
+            volume.warnings.push_back(
+                fmt::format("The segments '{}' and '{}' have the same LabelValue {}: they cannot be told apart.",
+                            first->second, segment.name, static_cast<std::int64_t>(segment.id)));
         const auto found = std::ranges::find(table->labels, segment.id, &Label::id);
         if (found == table->labels.end()) {
             empty += (empty.empty() ? "" : ", ") + segment.name;
