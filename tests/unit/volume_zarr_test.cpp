@@ -49,6 +49,23 @@ TEST_F(Zarr, ReadsPlaceFillValueAndLevels) {
     EXPECT_THAT(refusal(write("a.nrrd", "NRRD0004\n"), {.level = 0}), HasSubstr("only OME-Zarr images have levels"));
 }
 
+TEST_F(Zarr, NamesTheFileOfTheAttributes) {
+    write_image(R"({"type": "scale", "scale": [3, 0, 1]})");
+    EXPECT_THAT(refusal(file("a.zarr")),
+                HasSubstr("a.zarr/.zattrs: coordinateTransformations: 'scale' of axis y is 0"));
+}
+
+TEST_F(Zarr, LevelsAreOrderedBySize) {
+    write_image(R"({"type": "scale", "scale": [1, 1, 1]})");
+    write("a.zarr/0/.zarray",
+          R"({"zarr_format": 2, "shape": [1, 1, 2], "chunks": [2, 2, 2], "dtype": "|u1", "compressor": null,
+              "fill_value": 7, "order": "C", "filters": null, "dimension_separator": "/"})");
+    EXPECT_EQ(load_volume(file("a.zarr")).geometry.dims, glm::ivec3(3, 2, 2));
+    EXPECT_EQ(load_volume(file("a.zarr")).geometry.spacing().y, 8);
+    EXPECT_EQ(load_volume(file("a.zarr"), {.level = 1}).geometry.dims, glm::ivec3(2, 1, 1));
+    EXPECT_EQ(load_volume(file("a.zarr/0")).geometry.dims, glm::ivec3(2, 1, 1));
+}
+
 TEST_F(Zarr, KeepsNamesAndColoursOfLabels) {
     write_level("0");
     write("a.zarr/.zattrs", R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "0"}]}],

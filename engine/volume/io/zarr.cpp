@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <unordered_set>
 
 #include "engine/image/srgb.h"
@@ -284,7 +285,7 @@ void take_attributes(const ZarrArray& array, StoredSamples& stored, Volume& volu
     stored.slope = number("scale_factor").value_or(1);
     stored.intercept = number("add_offset").value_or(0);
     if (!std::isfinite(stored.slope) || !std::isfinite(stored.intercept) || stored.slope == 0)
-        fail("{}: scale_factor {} and add_offset {}: expected finite numbers", array.where, stored.slope,
+        fail("{}: scale_factor {} and add_offset {}: expected finite numbers", array.attributes_where, stored.slope,
              stored.intercept);
     if (stored.slope != 1 || stored.intercept != 0)
         volume.notes.push_back(
@@ -465,19 +466,44 @@ const json& checked_datasets(const std::string& where, const json& multiscale) {
     return *datasets;
 }
 
+/// The levels of an image from fine to coarse, as OME-Zarr demands; others are sorted by the size of their arrays.
+std::vector<const json*> levels_of(const ZarrStore& store, const ZarrNode& group, const json& multiscale) {
+    std::vector<const json*> levels;
+    std::vector<double> sizes;
+    for (const json& dataset : checked_datasets(group.attributes_where, multiscale)) {
+        levels.push_back(&dataset);
+        try {
+            const auto array = array_at(store, zarr_key(group.key, dataset_path(group.attributes_where, dataset)));
+            sizes.push_back(1);
+            for (const std::size_t size : array.shape)
+                sizes.back() *= static_cast<double>(size);
+        } catch (const Error&) {  // NOLINT(bugprone-empty-catch): it may be a level that is not read
+        }
+    }
+    if (sizes.size() < levels.size() || std::ranges::is_sorted(sizes, std::greater())) return levels;
+    std::vector<std::size_t> order(levels.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return sizes[i]; });
+    std::vector<const json*> sorted;
+    for (const std::size_t i : order)
+        sorted.push_back(levels[i]);
+    return sorted;
+}
+
 Volume load_multiscale(const std::string& path, const ZarrStore& store, const ZarrNode& group, const json& multiscale,
                        const LoadOptions& options) {
-    const json& datasets = checked_datasets(group.where, multiscale);
+    const auto datasets = levels_of(store, group, multiscale);
     const std::size_t levels = datasets.size();
     if (options.level && (*options.level < 0 || static_cast<std::size_t>(*options.level) >= levels))
         fail("{}: --level {}: it has {} levels, numbered from 0, the finest", path, *options.level, levels);
     for (std::size_t level = static_cast<std::size_t>(options.level.value_or(0));; ++level) {
-        const ZarrArray array = array_at(store, zarr_key(group.key, dataset_path(group.where, datasets[level])));
+        const ZarrArray array =
+            array_at(store, zarr_key(group.key, dataset_path(group.attributes_where, *datasets[level])));
         ZarrView view;
-        view.axes = multiscale_axes(group.where, multiscale, array.shape.size());
-        find_space(group.where, view);
-        const bool of_level = apply_transformations(group.where, datasets[level], view.axes);
-        const bool of_all = apply_transformations(group.where, multiscale, view.axes);
+        view.axes = multiscale_axes(group.attributes_where, multiscale, array.shape.size());
+        find_space(group.attributes_where, view);
+        const bool of_level = apply_transformations(group.attributes_where, *datasets[level], view.axes);
+        const bool of_all = apply_transformations(group.attributes_where, multiscale, view.axes);
         view.has_place = of_level || of_all;
         if (!options.level && level + 1 < levels) {
             try {
@@ -548,8 +574,9 @@ std::optional<Volume> load_level_of_image(const std::string& path, const LoadOpt
         for (const json& multiscale : *multiscales) {
             const json* datasets = member(multiscale, "datasets");
             if (datasets == nullptr || !datasets->is_array()) continue;
-            for (std::size_t level = 0; level < datasets->size(); ++level)
-                if (text_of((*datasets)[level], "path") == inside) {
+            const auto levels = levels_of(*store, *group, multiscale);
+            for (std::size_t level = 0; level < levels.size(); ++level)
+                if (text_of(*levels[level], "path") == inside) {
                     LoadOptions one = options;
                     one.level = static_cast<int>(level);
                     Volume volume = load_multiscale(path, *store, *group, multiscale, one);

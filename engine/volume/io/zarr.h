@@ -47,7 +47,8 @@ std::string zarr_key(const std::string& group, const std::string& name);
 
 /// A group or array, with its metadata and attributes.
 struct ZarrNode {
-    std::string key, where;  ///< where: the metadata file, for messages
+    std::string key, where;        ///< where: the metadata file, for messages
+    std::string attributes_where;  ///< the file of the attributes
     int version = 2;
     bool is_array = false;
     nlohmann::json metadata, attributes;
@@ -68,7 +69,7 @@ struct ZarrCodec {
 
 /// An array's description, completely checked.
 struct ZarrArray {
-    std::string key, where;
+    std::string key, where, attributes_where;
     ZarrShape shape, chunk;
     SampleType type = SampleType::UInt8;
     bool is_half = false, is_bool = false;  ///< half: UInt16 until it is converted

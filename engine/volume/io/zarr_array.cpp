@@ -366,7 +366,7 @@ std::optional<ZarrNode> zarr_node(const ZarrStore& store, const std::string& key
     const std::string v3 = zarr_key(key, "zarr.json");
     if (const auto text = store.text(v3)) {
         node.version = 3;
-        node.where = store.shown(v3);
+        node.where = node.attributes_where = store.shown(v3);
         node.metadata = parsed_json(node.where, *text);
         const json& format = zarr_field(node.where, node.metadata, "zarr_format");
         if (format != 3) fail("{}: 'zarr_format': {}: expected 3", node.where, shown_json(format));
@@ -389,12 +389,14 @@ std::optional<ZarrNode> zarr_node(const ZarrStore& store, const std::string& key
         if (format != 2) fail("{}: 'zarr_format': {}: expected 2", node.where, shown_json(format));
     }
     node.attributes = json::object();
-    if (attributes) node.attributes = parsed_json(store.shown(zarr_key(key, ".zattrs")), *attributes);
+    node.attributes_where = store.shown(zarr_key(key, ".zattrs"));
+    if (attributes) node.attributes = parsed_json(node.attributes_where, *attributes);
     return node;
 }
 
 ZarrArray zarr_array(const ZarrNode& node) {
-    ZarrArray array{.key = node.key, .where = node.where, .attributes = node.attributes};
+    ZarrArray array{
+        .key = node.key, .where = node.where, .attributes_where = node.attributes_where, .attributes = node.attributes};
     array.shape = zarr_shape(node.where, node.metadata, "shape", 1);
     if (node.version == 2) {
         array.chunk = zarr_shape(node.where, node.metadata, "chunks", 1);
@@ -413,7 +415,7 @@ ZarrArray zarr_array(const ZarrNode& node) {
         for (const json& one : *names)
             array.dimension_names.push_back(one.is_string() ? one.get<std::string>() : "");
     if (!array.dimension_names.empty() && array.dimension_names.size() != array.shape.size())
-        fail("{}: {} names for {} axes", node.where, array.dimension_names.size(), array.shape.size());
+        fail("{}: {} names for {} axes", node.attributes_where, array.dimension_names.size(), array.shape.size());
     const auto fill = node.metadata.find("fill_value");
     set_fill(array, fill == node.metadata.end() ? json() : *fill);
     return array;
