@@ -75,7 +75,8 @@ SplineTaps spline_taps(double place, int size);
 double mean_of(const Volume& volume);
 
 /// CRC-32 of zlib over the samples as little-endian float32 in the file's unit, x fastest; NaN (0x7fc00000) without
-/// data. For comparison with other programs. Throws Error for a packed volume.
+/// data. Of labels that floats cannot tell apart: over their numbers as 64-bit integers, -2^63 without data. For
+/// comparison with other programs. Throws Error for a packed volume.
 std::uint32_t samples_crc32(const Volume& volume);
 
 struct Histogram {

@@ -1,4 +1,9 @@
 // NRRD: place, units and values from the header; Slicer's segmentations; refusals.
+#include <zlib.h>
+
+#include <array>
+
+#include "engine/volume/filters.h"
 #include "tests/unit/volume_test_files.h"
 
 namespace {
@@ -172,6 +177,8 @@ TEST_F(NrrdFiles, RefusesHeadersThatContradict) {
         load_volume(nrrd("space dimension: 3\nspace directions: (1,0,0) (0,2,0) (0,0,1)\nspacings: nan nan nan\n"))
             .geometry.spacing(),
         glm::dvec3(1, 2, 1));
+    EXPECT_THAT(refusal(with("type: short\ndimension: 2\nsizes: 2 2\nencoding: raw\n", "12345678")),
+                HasSubstr("'endian': missing, expected little or big"));
     for (const char* cut : {"type: uchar\ndimension: 3", "type: short\ndimension: 3\nsizes: 2 2 2\nencoding: raw"})
         EXPECT_THAT(refusal(write("cut.nrrd", std::string("NRRD0005\n") + cut)),
                     HasSubstr("truncated: its NRRD header does not end with an empty line"));
@@ -180,6 +187,14 @@ TEST_F(NrrdFiles, RefusesHeadersThatContradict) {
     EXPECT_THAT(load_volume(write("long.nrrd", content_of(nrrd("")) + std::string(17, '9'))).warnings,
                 ElementsAre(HasSubstr("after")));
     EXPECT_THAT(load_volume(nrrd("old min: -3\nold max: 5.5\n")).notes, Contains(HasSubstr("-3 to 5.5 (old min")));
+}
+
+TEST_F(NrrdFiles, WarnsOfValuesThatNoMeasurementHas) {
+    const Volume volume =
+        load_volume(with("type: double\ndimension: 3\nsizes: 2 2 1\nencoding: ascii\n", "1 -1e300 2e99 nan"));
+    EXPECT_EQ(volume.non_finite_count, 2U);
+    EXPECT_THAT(volume.warnings, Contains(HasSubstr("1 samples are above 1e+100 in magnitude")));
+    EXPECT_NEAR(volume.in_file_unit(static_cast<double>(volume.max_value)), 2e99, 1e93);
 }
 
 TEST_F(NrrdFiles, ReadsSlicerSegmentations) {
@@ -225,6 +240,14 @@ TEST_F(NrrdFiles, KeepsLargeIdsWithTheirNames) {
     EXPECT_THAT(volume.values, ElementsAre(0, 1, 2, 3));
     EXPECT_EQ(volume.labels->labels[1].name, "area");
     EXPECT_EQ(volume.labels->number_of(volume.labels->labels[3]), "18446744073709551615");
+    // The checksum is that of the numbers, not of their ranks.
+    const auto sum_of = [&](std::int64_t last) {
+        return samples_crc32(load_volume(with("type: longlong\ndimension: 3\nsizes: 2 2 1\nencoding: ascii\n",
+                                              fmt::format("0 312782546 312782550 {}", last))));
+    };
+    const std::array<std::int64_t, 4> numbers{0, 312782546, 312782550, 312782551};
+    EXPECT_EQ(sum_of(312782551), crc32(0, reinterpret_cast<const Bytef*>(numbers.data()), sizeof numbers));
+    EXPECT_NE(sum_of(312782551), sum_of(312782552));
 }
 
 TEST_F(NrrdFiles, ReadsFilesThatAreGzipAsAWhole) {

@@ -151,7 +151,9 @@ class NrrdReading {
         const auto endian = nrrd_lower(header_.value("endian"));
         const bool matters = size_of(data.type) > 1 && data.encoding != StoredEncoding::Text;
         if (header_.has("endian") ? endian != "little" && endian != "big" : matters)
-            header_.refuse("endian", fmt::format("'{}', expected little or big", header_.value("endian")));
+            header_.refuse("endian", fmt::format("{}, expected little or big",
+                                                 header_.has("endian") ? fmt::format("'{}'", header_.value("endian"))
+                                                                       : "missing"));
         data.swapped = matters && (endian == "little") != (std::endian::native == std::endian::little);
 
         const auto lines = header_.whole("lineskip", 0), bytes = header_.whole("byteskip", 0);

@@ -100,22 +100,34 @@ bool take_ranks(const StoredSamples& stored, Volume& volume) {
     return true;
 }
 
-/// The power of two by which samples are divided because floats cannot hold them; 1: they can. Larger samples than
-/// kLargest are no measurements: they become infinite, and so contain no data.
-double scale_for(const StoredSamples& stored, std::size_t count) {
-    constexpr double kLargest = 1e100, kHeld = 1e37, kSmallest = 1e-30;
-    if (size_of(stored.type) < 8 && stored.slope == 1 && stored.intercept == 0) return 1;
+constexpr double kLargest = 1e100;
+
+/// How samples become floats.
+struct FloatScale {
+    double scale = 1;           ///< the power of two by which they are divided because floats cannot hold them
+    std::size_t too_large = 0;  ///< those above kLargest are no measurements: they become infinite, without data
+};
+
+FloatScale scale_for(const StoredSamples& stored, std::size_t count) {
+    constexpr double kHeld = 1e37, kSmallest = 1e-30;
+    if (size_of(stored.type) < 8 && stored.slope == 1 && stored.intercept == 0) return {};
     double largest = 0;
+    FloatScale found;
     for_type(stored.type, [&](auto example) {
         using T = decltype(example);
         for (std::size_t i = 0; i < count; ++i) {
             const auto value = static_cast<double>(stored_at<T>(stored, i));
             const double size = std::abs(stored.slope * value + stored.intercept);
-            if (size > largest && size <= kLargest && !is_fill(stored, value)) largest = size;
+            if (is_fill(stored, value)) continue;
+            if (size <= kLargest)
+                largest = std::max(largest, size);
+            else if (std::isfinite(static_cast<double>(value)))
+                ++found.too_large;
         }
     });
     const bool fits = largest <= kHeld && largest >= kSmallest;
-    return fits || largest == 0 ? 1 : std::ldexp(1.0, std::ilogb(largest));
+    if (!fits && largest != 0) found.scale = std::ldexp(1.0, std::ilogb(largest));
+    return found;
 }
 
 /// Whether an integer sample is not exact as a float.
@@ -161,7 +173,11 @@ void take_samples(const StoredSamples& stored, Volume& volume) {
         if (ranked) return;
         volume.notes.emplace_back("Samples beyond 2^24 are rounded to 24 significant bits.");
     }
-    const double scale = scale_for(stored, count);
+    const auto [scale, too_large] = scale_for(stored, count);
+    if (too_large > 0)
+        volume.warnings.push_back(
+            fmt::format("{} samples are above {} in magnitude, which no measurement is: they contain no data.",
+                        too_large, kLargest));
     StoredSamples scaled = stored;
     scaled.slope /= scale;
     scaled.intercept /= scale;
