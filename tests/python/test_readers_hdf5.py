@@ -131,6 +131,47 @@ def test_hdf5_lists_what_there_is(tmp_path):
         Volume(f"{path}:d")
 
 
+def test_hdf5_messages_name_the_file(tmp_path, program):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = str(tmp_path / "a.h5")
+    array = np.arange(27, dtype="u1").reshape(3, 3, 3)
+    with h5py.File(path, "w") as file:
+        file["a"] = array
+        file["a"].attrs["element_size_um"] = [1, -2, 3]
+    with pytest.raises(Error, match="a.h5: /a: attribute element_size_um: -2, expected lengths above 0"):
+        Volume(path)
+    with h5py.File(path, "w") as file:
+        file["VTKHDF/PointData/s"] = array
+        file["VTKHDF"].attrs["Type"] = np.bytes_("UnstructuredGrid")
+    with pytest.raises(Error, match="a.h5: /VTKHDF/PointData/s: .* 'UnstructuredGrid', expected ImageData"):
+        Volume(path)
+    with h5py.File(path, "w") as file:
+        file.create_dataset("a", data=np.zeros((16, 16, 16), "i4"), compression="lzf")
+    # In a program of its own: h5py brings the filter into this one.
+    told = program("info", path, check=False)
+    assert told.returncode != 0
+    assert "a.h5: /a: compressed by the filter lzf (32000), which is not available" in told.stderr
+    with h5py.File(path, "w") as file:
+        file["link"] = h5py.ExternalLink("other.h5", "/data")
+    with pytest.raises(Error, match="a.h5: contains no array of numbers, but /link leads to /data in the file other.h5"):
+        Volume(path)
+
+
+def test_hdf5_short_axes_may_be_colours(tmp_path):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = str(tmp_path / "a.h5")
+    with h5py.File(path, "w") as file:
+        file["a"] = np.arange(5 * 6 * 3, dtype="u1").reshape(5, 6, 3)
+    with pytest.warns(UserWarning, match=r"The last axis of shape \(5, 6, 3\) has 3 entries: it is read as x, although"):
+        assert Volume(path).shape == (5, 6, 3)
+    with h5py.File(path, "a") as file:
+        for axis, letter in enumerate("zyx"):
+            file["a"].dims[axis].label = letter
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Volume(path)
+
+
 def test_hdf5_components_and_frames(tmp_path):
     h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
     path = str(tmp_path / "a.h5")

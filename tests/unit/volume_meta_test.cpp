@@ -73,6 +73,9 @@ TEST_F(MetaFiles, RefusesHeadersThatContradict) {
     };
     for (const auto& [keys, reason] : cases)
         EXPECT_THAT(refusal(meta(keys)), AllOf(HasSubstr("a.mha"), HasSubstr(reason))) << keys;
+    EXPECT_THAT(
+        refusal(write("a.mha", "ElementDataFile = LOCAL\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n")),
+        HasSubstr("NDims: missing before ElementDataFile, which must be the last key"));
 }
 
 TEST_F(MetaFiles, GiplTakesVoxelDimsAndOrigin) {

@@ -46,6 +46,19 @@ std::size_t chosen_array(const std::string& path, const LoadOptions& options, co
     fail("{}: contains {} arrays; name one:{}", path, volumes.size(), listed_arrays(path, volumes));
 }
 
+std::string colour_warning(const std::array<std::uint64_t, 3>& extent, std::string_view shape) {
+    constexpr std::uint64_t kMostColours = 4;
+    if (extent[2] > kMostColours || extent[0] <= kMostColours || extent[1] <= kMostColours) return "";
+    return fmt::format("The last axis of shape {} has {} entries: it is read as x, although it may be colours.", shape,
+                       extent[2]);
+}
+
+std::string colour_warning(const NamedArray& array, const ArrayAxes& axes) {
+    if (axes.named || axes.component || axes.space.size() != 3) return "";
+    return colour_warning({array.extent[axes.space[0]], array.extent[axes.space[1]], array.extent[axes.space[2]]},
+                          fmt::format("({})", fmt::join(array.extent, ", ")));
+}
+
 ArrayAxes axes_of(const NamedArray& array, const std::string& letters) {
     ArrayAxes axes;
     const std::size_t count = array.extent.size();
@@ -78,6 +91,7 @@ ArrayAxes axes_of(const NamedArray& array, const std::string& letters) {
         std::ranges::sort(axes.space);
     }
     axes.frames = long_axes;
+    axes.named = named;
     // Named axes may be stored in any order; a missing one is the thin axis.
     if (named) {
         std::array<bool, 3> taken{};

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/volume/load_volume.h"
@@ -31,7 +32,14 @@ struct ArrayAxes {
     std::array<int, 3> world{0, 1, 2};
     std::optional<std::size_t> component;
     std::vector<std::size_t> frames;  ///< all other axes longer than 1, slowest first
+    bool named = false;               ///< by the file
 };
+
+/// A warning if the fastest of three unnamed axes is so short that it may be one of colours; "" otherwise. `extent`:
+/// of these axes, slowest first; `shape`: of the array, as a message shows it.
+std::string colour_warning(const std::array<std::uint64_t, 3>& extent, std::string_view shape);
+/// The same for an array whose file names no axes.
+std::string colour_warning(const NamedArray& array, const ArrayAxes& axes);
 
 /// The box of an array to read: one component and frame, the whole of space. The slowest axis of a volume of one or
 /// two axes is missing in `space`. Fails if a choice is open. Axes of length 1 are ignored.

@@ -102,6 +102,11 @@ class Hdf5File {
     bool has(const std::string& path) const;
     /// Paths of all datasets of numbers, in order; those behind soft and external links are left out.
     std::vector<std::string> datasets() const;
+    struct ExternalLink {
+        std::string name, file, object;
+    };
+    /// Links to objects of other files, which are not followed.
+    std::vector<ExternalLink> external_links() const;
     /// The numbers of an attribute of the object `path`; nullopt if it is missing or not numeric.
     std::optional<std::vector<double>> find_numbers(const std::string& path, const std::string& name) const;
     /// The text of an attribute, or all its texts joined; nullopt if it is missing or not a text.

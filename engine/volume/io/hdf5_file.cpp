@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <system_error>
 
@@ -147,6 +148,22 @@ Hdf5Id selection(hid_t dataset, const Hdf5Extent& low, const Hdf5Extent& size) {
     return file_space;
 }
 
+/// The first filter of a dataset that this library lacks, "lzf (32000)"; empty: none.
+std::string missing_filter(hid_t dataset) {
+    const Hdf5Id creation(H5Dget_create_plist(dataset), H5Pclose);
+    const int count = H5Pget_nfilters(creation.get());
+    for (int i = 0; i < count; ++i) {
+        unsigned flags = 0;
+        std::size_t values = 0;
+        std::array<char, 64> name{};
+        const auto filter = H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &values, nullptr,
+                                           name.size() - 1, name.data(), nullptr);
+        if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+        return name[0] == '\0' ? fmt::format("number {}", filter) : fmt::format("{} ({})", name.data(), filter);
+    }
+    return "";
+}
+
 /// Disables file locks: they fail on read-only and some network file systems. The creator of the temporary name already
 /// locks a written file.
 Hdf5Id without_locks() {
@@ -173,8 +190,13 @@ bool Hdf5Id::close() {
 void Hdf5Dataset::read(const Hdf5Extent& low, const Hdf5Extent& size, SampleType type, void* out) const {
     const Quiet quiet;
     const Hdf5Id from = selection(id_.get(), low, size), to = space(size);
-    if (!from || H5Dread(id_.get(), memory_type(type), to.get(), from.get(), H5P_DEFAULT, out) < 0)
-        fail("{}: {}: cannot be read, the file is damaged: {}", file_, name_, reason());
+    if (!from || H5Dread(id_.get(), memory_type(type), to.get(), from.get(), H5P_DEFAULT, out) < 0) {
+        const std::string why = reason();
+        if (const std::string filter = missing_filter(id_.get()); !filter.empty())
+            fail("{}: {}: compressed by the filter {}, which is not available; repack it where it is, e.g. with gzip",
+                 file_, name_, filter);
+        fail("{}: {}: cannot be read, the file is damaged: {}", file_, name_, why);
+    }
 }
 
 void Hdf5Dataset::write(const Hdf5Extent& low, const Hdf5Extent& size, SampleType type, const void* data) const {
@@ -372,6 +394,23 @@ std::vector<std::string> Hdf5File::datasets() const {
     const auto status = H5Ovisit2(id_.get(), H5_INDEX_NAME, H5_ITER_INC, visit, &found, H5O_INFO_BASIC);
 #endif
     if (status < 0) fail("{}: its groups cannot be listed, the file is damaged: {}", path_, reason());
+    return found;
+}
+
+std::vector<Hdf5File::ExternalLink> Hdf5File::external_links() const {
+    const Quiet quiet;
+    std::vector<ExternalLink> found;
+    const auto visit = [](hid_t group, const char* name, const H5L_info_t* info, void* data) -> herr_t {
+        constexpr std::size_t kMost = 65536;
+        if (info->type != H5L_TYPE_EXTERNAL || info->u.val_size == 0 || info->u.val_size > kMost) return 0;
+        std::string value(info->u.val_size, '\0');
+        const char *file = nullptr, *object = nullptr;
+        if (H5Lget_val(group, name, value.data(), value.size(), H5P_DEFAULT) >= 0 &&
+            H5Lunpack_elink_val(value.data(), value.size(), nullptr, &file, &object) >= 0)
+            static_cast<std::vector<ExternalLink>*>(data)->push_back({std::string("/") + name, file, object});
+        return 0;
+    };
+    (void)H5Lvisit(id_.get(), H5_INDEX_NAME, H5_ITER_INC, visit, &found);
     return found;
 }
 

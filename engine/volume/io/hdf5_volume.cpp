@@ -59,10 +59,11 @@ std::optional<Hdf5Place> place_of_itk(const Hdf5File& file, const std::string& a
 }
 
 // /VTKHDF with Type "ImageData".
-std::optional<Hdf5Place> place_of_vtkhdf(const Hdf5File& file, const std::string& array) {
+std::optional<Hdf5Place> place_of_vtkhdf(const std::string& path, const Hdf5File& file, const std::string& array) {
     if (!array.starts_with("/VTKHDF/PointData/") && !array.starts_with("/VTKHDF/CellData/")) return std::nullopt;
     if (file.find_text("/VTKHDF", "Type").value_or("") != "ImageData")
-        fail("{}: VTKHDF data that are not an image (attribute Type of /VTKHDF)", array);
+        fail("{}: {}: VTKHDF data of Type '{}', expected ImageData (attribute Type of /VTKHDF)", path, array,
+             file.find_text("/VTKHDF", "Type").value_or(""));
     const auto spacing = file.find_numbers("/VTKHDF", "Spacing"), origin = file.find_numbers("/VTKHDF", "Origin"),
                extent = file.find_numbers("/VTKHDF", "WholeExtent");
     if (!spacing || spacing->size() != 3 || !origin || origin->size() != 3 || !extent || extent->size() != 6)
@@ -131,8 +132,8 @@ std::optional<Hdf5Place> place_of_imaris(const Hdf5File& file, const std::string
 }
 
 // An attribute of the array or of a group above it that gives the spacing, slowest axis first, with its unit.
-std::optional<Hdf5Place> place_of_attributes(const Hdf5File& file, const std::string& array, const ArrayAxes& axes,
-                                             std::size_t rank, std::vector<std::string>& notes) {
+std::optional<Hdf5Place> place_of_attributes(const std::string& path, const Hdf5File& file, const std::string& array,
+                                             const ArrayAxes& axes, std::size_t rank, std::vector<std::string>& notes) {
     struct Name {
         const char* name;
         const char* unit;  // nullptr: in an attribute of its own
@@ -170,7 +171,7 @@ std::optional<Hdf5Place> place_of_attributes(const Hdf5File& file, const std::st
                 const std::size_t at = of_all ? axes.space[axes.space.size() - 1 - from_last] : 2 - i;
                 const double step = (*numbers)[at];
                 if (!(step > 0) || !std::isfinite(step))
-                    fail("{}: attribute {}: {}, expected lengths above 0", object, known.name, step);
+                    fail("{}: {}: attribute {}: {}, expected lengths above 0", path, object, known.name, step);
                 const int column = static_cast<int>(i);
                 place.axes[column] = glm::dvec3(0);
                 place.axes[column][axes.world.at(i)] = step;
@@ -225,6 +226,9 @@ Volume load_hdf5(const std::string& path, const LoadOptions& options) {
     report(options, 0.0, "reading header");
     const Hdf5File file = Hdf5File::open(path);
     const auto arrays = arrays_of(file);
+    if (const auto links = file.external_links(); arrays.empty() && !links.empty())
+        fail("{}: contains no array of numbers, but {} leads to {} in the file {}; give that file", path, links[0].name,
+             links[0].object, links[0].file);
     NamedArray array = arrays[chosen_array(path, options, arrays)];
     const Hdf5Dataset data = file.dataset(array.name);
     if (is_imaris(file, array.name, array.extent)) array.extent = size_of_imaris(path, file, array.name, array.extent);
@@ -240,9 +244,9 @@ Volume load_hdf5(const std::string& path, const LoadOptions& options) {
     check_stored_size(path, bytes, data.stored_bytes(), kBestDeflateRatio * kPlainRatio);
 
     auto place = place_of_itk(file, array.name);
-    if (!place) place = place_of_vtkhdf(file, array.name);
+    if (!place) place = place_of_vtkhdf(path, file, array.name);
     if (!place) place = place_of_imaris(file, array.name, array.extent);
-    if (!place) place = place_of_attributes(file, array.name, axes, array.extent.size(), volume.notes);
+    if (!place) place = place_of_attributes(path, file, array.name, axes, array.extent.size(), volume.notes);
     if (!place) {
         place.emplace();
         place->source = "none: 1 mm assumed";
@@ -269,6 +273,8 @@ Volume load_hdf5(const std::string& path, const LoadOptions& options) {
     stored.intercept = one("add_offset").value_or(0);
     stored.fill = one("_FillValue");
     if (!stored.fill) stored.fill = one("missing_value");
+    if (const auto warning = colour_warning(array, axes); place->source.starts_with("none") && !warning.empty())
+        volume.warnings.push_back(warning);
     take_samples(stored, volume);
     return volume;
 }

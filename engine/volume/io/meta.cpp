@@ -323,6 +323,9 @@ MetaFile meta_file(const std::string& path, const std::string& file, const LoadO
     out.volume.name = path;
     if (header.has("objecttype") && header.value("objecttype") != "Image")
         header.refuse("ObjectType", fmt::format("'{}', expected Image", header.value("objecttype")));
+    if (!header.has("ndims"))
+        header.refuse("NDims",
+                      header.has("dimsize") ? "missing" : "missing before ElementDataFile, which must be the last key");
     const auto axes = header.whole("ndims", 0);
     if (axes < 2 || axes > 4)
         fail("{}: NDims = {}, expected 2 to 4{}", path, header.value("ndims"),

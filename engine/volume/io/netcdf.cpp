@@ -410,6 +410,7 @@ Volume load_netcdf(const std::string& path, const LoadOptions& options) {
     if (!stored.fill) stored.fill = default_fill(variable);
     if (stored.fill && is_unsigned == "true" && *stored.fill < 0)
         stored.fill = *stored.fill + std::ldexp(1.0, static_cast<int>(8 * size_of(type)));
+    if (const auto warning = colour_warning(arrays[chosen], axes); !warning.empty()) volume.warnings.push_back(warning);
     take_samples(stored, volume);
     mark_invalid(variable, stored, volume.values);
     if (arrays.size() > 1)

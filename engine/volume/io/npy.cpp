@@ -234,10 +234,9 @@ NpyChoice chosen_part(const std::string& path, const LoadOptions& options, const
     if (axes.size() == 2) {
         axes.insert(axes.begin(), NpyAxis{});
         volume.notes.emplace_back("The array is 2-D: it is read as a volume of one slice, 1 mm thick.");
-    } else if (!has_components && axes[2].size <= 4 && axes[0].size > 4 && axes[1].size > 4) {
-        volume.warnings.push_back(
-            fmt::format("The last axis of shape {} has {} entries: it is read as x, although it may be colours.", shape,
-                        axes[2].size));
+    } else if (const auto warning = colour_warning({axes[0].size, axes[1].size, axes[2].size}, shape);
+               !has_components && !warning.empty()) {
+        volume.warnings.push_back(warning);
     }
     std::copy_n(axes.begin(), 3, choice.axes.begin());
     return choice;
