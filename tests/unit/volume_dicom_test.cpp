@@ -167,6 +167,40 @@ TEST_F(Dicom, LeavesOutDuplicatesAndLocalizers) {
     EXPECT_EQ(load_volume(folder_.string(), {.series = "0"}).geometry.dims.z, 3);
 }
 
+TEST_F(Dicom, SlicesOfOtherPlacesAreNoPartOfAStack) {
+    const auto write_slices = [&](std::uint32_t tag, std::string_view vr, const std::string& most,
+                                  const std::string& last) {
+        for (int z = 0; z < 4; ++z) {
+            const std::string& value = z < 3 ? most : last;
+            DicomData data = slice(2 * z, 10 * z);
+            if (!value.empty()) data.text(tag, vr, value);
+            write_data(fmt::format("{}.dcm", z), data);
+        }
+        return folder_.string();
+    };
+    struct Case {
+        std::uint32_t tag;
+        std::string_view vr;
+        const char *most, *last, *shown;
+    };
+    for (const Case& c : {Case{0x00100020, "LO", "A", "B", "patient B"},
+                          Case{0x00280004, "CS", "MONOCHROME2", "MONOCHROME1", "MONOCHROME1, 3.dcm"}}) {
+        const std::string path = write_slices(c.tag, c.vr, c.most, c.last);
+        EXPECT_THAT(refusal(path), AllOf(HasSubstr("2 DICOM stacks"), HasSubstr(c.shown)));
+        EXPECT_EQ(load_volume(path, {.series = "0"}).geometry.dims.z, 3);
+    }
+    // A file that does not say it belongs to the others.
+    EXPECT_EQ(load_volume(write_slices(0x00100020, "LO", "A", "")).geometry.dims.z, 4);
+    EXPECT_THAT(load_volume(write_slices(0x00200052, "UI", "1.2.3", "1.2.4")).warnings,
+                testing::ElementsAre(AllOf(HasSubstr("2 different FrameOfReferenceUIDs"), HasSubstr("3.dcm"))));
+    EXPECT_THAT(load_volume(write_slices(0x00200052, "UI", "1.2.3", "")).warnings, testing::IsEmpty());
+    EXPECT_THAT(
+        load_volume(write_slices(0x00281054, "LO", "HU", "US")).warnings,
+        testing::ElementsAre(HasSubstr("RescaleType (0028,1054) or Units (0054,1001): 0.dcm has HU, 3.dcm has US")));
+    EXPECT_THAT(load_volume(write_slices(0x00281052, "DS", "-1024", "")).warnings,
+                testing::ElementsAre(AllOf(HasSubstr("1 of 4 slices"), HasSubstr("such as 3.dcm"))));
+}
+
 TEST_F(Dicom, NamesSlicesThatAreNoDicomFiles) {
     for (int z = 0; z < 3; ++z)
         write_data(fmt::format("i{}.dcm", z), slice(2 * z, 10 * z));
@@ -366,6 +400,12 @@ TEST_F(Dicom, SegmentsAreLabelsWithNamesAndColours) {
     EXPECT_EQ(sparse.geometry.dims.z, 5);
     EXPECT_EQ(sparse.at(0, 0, 2), 0.0F);
     EXPECT_EQ(sparse.at(0, 0, 4), 2.0F);
+    DicomData fractions = frames_of(1);
+    fractions.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4").text(0x00620001, "CS", "FRACTIONAL");
+    fractions.u16(0x0062000e, {2}).sequence(0x00620002, {segment(2, "liver", {65535, 32896, 32896})});
+    fractions.sequence(0x52009229, {shared()}).sequence(0x52009230, {frame(2, 0)});
+    EXPECT_THAT(load_volume(write_data("fractions.dcm", fractions)).warnings,
+                Contains(HasSubstr("1 stored fractions are above MaximumFractionalValue (0062,000e), which is 2")));
 }
 
 TEST_F(Dicom, MosaicsAreDivided) {

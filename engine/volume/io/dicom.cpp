@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "engine/volume/io/dicom.h"
 #include "engine/volume/io/samples.h"
@@ -111,6 +113,44 @@ void read_frames(const std::string& name, const std::vector<DicomImage>& images,
     }
 }
 
+/// Says which slices are in another frame of reference or on another scale than the others.
+void compare_slices(const std::vector<DicomImage>& images, const std::vector<DicomFrame>& frames, Volume& volume) {
+    const auto name_of = [&](const DicomFrame& frame) {
+        const DicomImage& image = images[frame.image];
+        return image.frames.size() == 1 ? image.name() : fmt::format("frame {}", frame.index);
+    };
+    std::map<std::string, const DicomFrame*> references;
+    std::set<std::size_t> files;
+    for (const DicomFrame& frame : frames) {
+        const std::string& reference = images[frame.image].frame_of_reference;
+        if (reference.empty()) continue;
+        references.emplace(reference, &frame);
+        files.insert(frame.image);
+    }
+    if (references.size() > 1 && references.size() == files.size())  // as some programs write that hide names
+        volume.notes.emplace_back("Each slice has a FrameOfReferenceUID (0020,0052) of its own: it is not used.");
+    else if (references.size() > 1)
+        volume.warnings.push_back(fmt::format(
+            "Slices have {} different FrameOfReferenceUIDs (0020,0052), such as {} and {}: their positions may not "
+            "belong together.",
+            references.size(), name_of(*references.begin()->second), name_of(*references.rbegin()->second)));
+    const auto silent = std::ranges::find(frames, false, &DicomFrame::says_scale);
+    const auto count = std::ranges::count(frames, false, &DicomFrame::says_scale);
+    if (count > 0 && static_cast<std::size_t>(count) < frames.size())
+        volume.warnings.push_back(fmt::format(
+            "{} of {} slices have neither RescaleSlope (0028,1053) nor RescaleIntercept (0028,1052), such as {}: their "
+            "values are as stored, unlike the others'.",
+            count, frames.size(), name_of(*silent)));
+    const DicomFrame& first = frames.front();
+    const auto other = std::ranges::find_if(
+        frames, [&](const DicomFrame& f) { return !f.unit.empty() && !first.unit.empty() && f.unit != first.unit; });
+    if (other != frames.end())
+        volume.warnings.push_back(
+            fmt::format("Slices differ in the unit of their values, RescaleType (0028,1054) or Units (0054,1001): {} "
+                        "has {}, {} has {}.",
+                        name_of(first), first.unit, name_of(*other), other->unit));
+}
+
 void read_volume(const std::string& name, const std::vector<DicomImage>& images, const LoadOptions& options,
                  Volume& volume) {
     DicomStack stack = choose_dicom_series(name, images, options, volume.warnings);
@@ -126,6 +166,7 @@ void read_volume(const std::string& name, const std::vector<DicomImage>& images,
         add_once(volume.notes, images[frame.image].notes);
         add_once(volume.warnings, images[frame.image].warnings);
     }
+    compare_slices(images, order.frames, volume);
     const DicomPlane& plane = first.plane;
     std::string source = placed            ? image.place
                          : image.spaced    ? "PixelSpacing (0028,0030), no position"

@@ -159,6 +159,8 @@ struct DicomFrame {
     glm::dvec3 rounding{0};              ///< mm, units of the last decimals that the position is written with
     DicomPlane plane;
     DicomScale scale;
+    bool says_scale = false;      ///< slope, intercept or table are written
+    std::string unit;             ///< of values, as the file names it: RescaleType or Units
     double declared_spacing = 0;  ///< Spacing Between Slices, 0: none
     bool whole_spacing = false;   ///< it is written without decimals
     double thickness = 0;         ///< Slice Thickness, 0: none
@@ -172,6 +174,7 @@ struct DicomFrame {
 /// A file's pictures.
 struct DicomImage {
     std::string file, series, description, modality, instance_uid;
+    std::string patient, frame_of_reference;  ///< empty: not given
     DicomLayout layout;
     std::size_t columns = 0, rows = 0;  ///< of a frame; smaller than the layout's in a mosaic
     std::vector<DicomFrame> frames;
@@ -182,6 +185,7 @@ struct DicomImage {
     std::vector<std::string> notes, warnings;
 
     std::string name() const;  ///< the file's name without folder
+    bool is_inverse() const { return layout.photometric == "MONOCHROME1"; }
 };
 /// Reads a file's frames. Throws Error. A file without pictures: an Error that names what it is.
 DicomImage read_dicom_image(const DicomFile& file);

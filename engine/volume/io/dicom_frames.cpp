@@ -295,6 +295,16 @@ struct DicomImageReader {
         }
     }
 
+    /// What says how stored samples become values, and their unit.
+    static void read_unit(const DicomGroups& groups, DicomFrame& frame) {
+        for (const DicomTag tag : {0x00281053U, 0x00281052U})
+            if (const DicomItem* item = groups.with(0x00289145, tag))
+                frame.says_scale = frame.says_scale || !item->text(tag).empty();
+        frame.says_scale = frame.says_scale || !groups.file.items(0x00283000).empty();
+        if (const DicomItem* item = groups.with(0x00289145, 0x00281054)) frame.unit = item->text(0x00281054);
+        if (frame.unit.empty()) frame.unit = groups.file.text(0x00541001);
+    }
+
     /// Slope and intercept, or the modality LUT, and the samples without data.
     DicomScale read_scale(const DicomGroups& groups) const {
         DicomScale scale;
@@ -572,6 +582,8 @@ struct DicomImageReader {
         image.description = data.text(0x0008103e);
         image.modality = data.text(0x00080060);
         image.instance_uid = data.text(0x00080018);
+        image.patient = data.text(0x00100020);
+        image.frame_of_reference = data.text(0x00200052);
         const std::string kind = dicom_kind_without_pictures(data);
         if (!kind.empty()) fail("{}: {}, which is no volume", file.path(), kind);
         image.layout = dicom_layout(file);
@@ -594,6 +606,7 @@ struct DicomImageReader {
             frame.index = i;
             frame.instance = std::isfinite(instance) ? instance : -1;
             read_distinctions(groups, frame);
+            read_unit(groups, frame);
             read_spacing(groups, frame);
             read_place(groups, frame);
             frame.scale = i == 0 || !own.empty() ? read_scale(groups) : image.frames.front().scale;

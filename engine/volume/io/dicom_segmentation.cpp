@@ -219,6 +219,7 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
     std::map<std::pair<int, int>, std::size_t> overlaps;
     const bool fractions = fractional && only;
     std::vector<int> unnamed;
+    std::size_t above = 0;  // fractions
     for (std::size_t i = 0; i < image.frames.size(); ++i) {
         report(options, 0.2 + 0.7 * static_cast<double>(i) / static_cast<double>(image.frames.size()),
                "reading segments");
@@ -230,6 +231,7 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
         pixels.read(i, 0, samples);
         float* const target = volume.values.data() + planes.plane[i] * part;
         for (std::size_t v = 0; v < part; ++v) {
+            if (fractional && samples[v] > most) ++above;
             if (label_map) {
                 const int found = static_cast<int>(samples[v]);
                 if (found != 0 && !segments.labels.contains(found)) {
@@ -249,6 +251,9 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
             }
         }
     }
+    if (above > 0)
+        volume.warnings.push_back(
+            fmt::format("{} stored fractions are above MaximumFractionalValue (0062,000e), which is {}.", above, most));
     if (!unnamed.empty())
         volume.warnings.push_back(fmt::format("{} labels occur that SegmentSequence (0062,0002) lacks, such as {}.",
                                               unnamed.size(), unnamed.front()));

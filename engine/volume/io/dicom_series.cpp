@@ -15,13 +15,20 @@ struct DicomCandidate {
     std::vector<DicomFrame> frames;
     std::set<std::size_t> files;
     std::size_t columns = 0, rows = 0, samples = 0;
-    bool localizer = true;  ///< all frames are
+    std::string patient;      ///< empty: no file says it
+    bool is_inverse = false;  ///< MONOCHROME1
+    bool localizer = true;    ///< all frames are
 };
+
+bool contradict(const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() && a != b;
+}
 
 bool fits_candidate(const DicomCandidate& candidate, const DicomImage& image, const DicomFrame& frame, bool by_stack) {
     const DicomFrame& first = candidate.frames.front();
     if (candidate.columns != image.columns || candidate.rows != image.rows ||
-        candidate.samples != image.layout.samples || first.position.has_value() != frame.position.has_value() ||
+        candidate.samples != image.layout.samples || contradict(candidate.patient, image.patient) ||
+        candidate.is_inverse != image.is_inverse() || first.position.has_value() != frame.position.has_value() ||
         (by_stack && first.plane.stack != frame.plane.stack))
         return false;
     // Across a whole row, slices may diverge by a hundredth of a pixel per pixel at most.
@@ -40,8 +47,13 @@ std::string direction_name(const DicomPlane& plane) {
     return most > 0.999 ? name : "oblique " + name;
 }
 
+/// What some candidates do not have in common.
+struct DicomDifferences {
+    bool patient = false, folder = false;
+};
+
 std::string candidate_line(const DicomCandidate& candidate, const std::vector<DicomImage>& images, std::size_t number,
-                           bool with_folders) {
+                           const DicomDifferences& differences) {
     const DicomFrame& first = candidate.frames.front();
     const std::size_t count = candidate.frames.size();
     std::string line = fmt::format("\n  {}: {} (", number, candidate.series.empty() ? "no UID" : candidate.series);
@@ -57,9 +69,11 @@ std::string candidate_line(const DicomCandidate& candidate, const std::vector<Di
     else
         line += ", no positions";
     if (!first.plane.stack.empty()) line += fmt::format(", stack {}", first.plane.stack);
+    if (candidate.is_inverse) line += ", MONOCHROME1";
+    if (differences.patient && !candidate.patient.empty()) line += ", patient " + candidate.patient;
     if (candidate.localizer) line += ", a localizer";
     if (!candidate.description.empty()) line += ", " + candidate.description;
-    if (with_folders)
+    if (differences.folder)
         line += ", in " + std::filesystem::path(images[first.image].file).parent_path().string();
     else if (candidate.files.size() == 1)
         line += ", " + images[first.image].name();
@@ -103,12 +117,15 @@ std::vector<DicomCandidate> candidates_of(const std::vector<DicomImage>& images,
                                    .files = {},
                                    .columns = images[i].columns,
                                    .rows = images[i].rows,
-                                   .samples = images[i].layout.samples});
+                                   .samples = images[i].layout.samples,
+                                   .patient = {},
+                                   .is_inverse = images[i].is_inverse()});
                     at = all.end() - 1;
                 }
                 at->frames.push_back(frame);
                 at->frames.back().image = i;
                 at->files.insert(i);
+                if (at->patient.empty()) at->patient = images[i].patient;
                 at->localizer = at->localizer && images[i].localizer;
             }
         }
@@ -130,10 +147,13 @@ DicomStack choose_dicom_series(const std::string& name, const std::vector<DicomI
         series.insert(candidate.series);
         folders.insert(std::filesystem::path(images[candidate.frames.front().image].file).parent_path().string());
     }
+    DicomDifferences differences{.folder = folders.size() > 1};
+    for (const DicomCandidate& candidate : all)
+        differences.patient = differences.patient || candidate.patient != all[0].patient;
     std::string list;
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        list += candidate_line(all[i], images, i, folders.size() > 1);
+        list += candidate_line(all[i], images, i, differences);
         if (options.series == std::to_string(i))
             chosen = {i};
         else if (!options.series.empty() && options.series == all[i].series)
@@ -151,8 +171,8 @@ DicomStack choose_dicom_series(const std::string& name, const std::vector<DicomI
         series.size() == all.size()
             ? fmt::format("{} DICOM series", all.size())
             : fmt::format(
-                  "{} DICOM stacks, which differ in series, number of pixels, orientation, pixel spacing or "
-                  "Stack ID (0020,9056)",
+                  "{} DICOM stacks, which differ in series, number of pixels, orientation, pixel spacing, patient "
+                  "(0010,0020), MONOCHROME1 (0028,0004) or Stack ID (0020,9056)",
                   all.size());
     if (chosen.size() == 1) {
         auto& one = all[chosen[0]];
