@@ -30,7 +30,8 @@ void convert_stored(const StoredSamples& stored, std::size_t count, float* targe
 /// Fills `volume.values`, of the volume's dims, which must be set. Integers whose magnitude exceeds 2^24 and which are
 /// not scaled keep their identity if they have at most kMaxRankedLabels distinct values: `volume.labels` is set and
 /// the samples become ranks. Otherwise they are rounded to float, which a note says. Values that floats cannot hold are
-/// divided by a power of two (`value_scale`). Sets `stored_type` if it is empty.
+/// divided by a power of two (`value_scale`); those beyond 1e100 contain no data, which a warning says. Sets
+/// `stored_type` if it is empty.
 void take_samples(const StoredSamples& stored, Volume& volume);
 
 /// Millimetres in a unit of length by its name or symbol ("mm", "um", "micron", "microns", "meter", "inch", ...), in
