@@ -112,8 +112,8 @@ class Renderer {
     /// it returns true, render() throws Interrupted, and the splats collected so far are kept. Empty: never.
     void set_interruption(std::function<bool()> wanted);
 
-    /// `report` is called while a picture waits for its splats, with the share of them that has its faces, 0 to 1. It may
-    /// throw: then render() does, and the next picture begins anew. Empty: never.
+    /// `report` is called while a picture waits for its splats, with the share of them that has its faces, 0 to 1. It
+    /// may throw: then render() does, and the next picture begins anew. Empty: never.
     void set_progress(std::function<void(double share)> report);
 
     /// Enables RenderStats::draw_counts (if the device can count) and dirty_share for the following pictures. Counting

@@ -78,7 +78,8 @@ void ProgressLine::update(double fraction, std::string_view what) {
     using namespace std::chrono;
     const bool terminal = isatty(STDERR_FILENO) == 1;
     const auto now = Clock::now();
-    if (quiet_ || now - begin_ < seconds(1) || now - last_ < (terminal ? milliseconds(100) : milliseconds(5000))) return;
+    if (quiet_ || now - begin_ < seconds(1) || now - last_ < (terminal ? milliseconds(100) : milliseconds(5000)))
+        return;
     last_ = now;
     shown_ = true;
     constexpr int kWidth = 30;

@@ -26,8 +26,8 @@ class ProgressBar {
     std::chrono::steady_clock::time_point last_;
 };
 
-/// Progress of work that is usually short: shown only if it takes longer than a second, as a bar on a terminal, else as a
-/// few lines. The destructor erases the bar.
+/// Progress of work that is usually short: shown only if it takes longer than a second, as a bar on a terminal, else as
+/// a few lines. The destructor erases the bar.
 class ProgressLine {
   public:
     explicit ProgressLine(bool quiet) : quiet_(quiet) {}

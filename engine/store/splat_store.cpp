@@ -302,8 +302,7 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
             passes::finish_splats(commands, collect, part);
         });
         done += part;
-        if (cost.progress && out.count > 0)
-            cost.progress(static_cast<double>(done) / static_cast<double>(out.count));
+        if (cost.progress && out.count > 0) cost.progress(static_cast<double>(done) / static_cast<double>(out.count));
     } while (done < out.count);
     out.with_edge = counts[0];
     out.with_crease = counts[1];

@@ -21,7 +21,7 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 /// Cost of collecting a picture's splats.
 struct SetupCost {
     std::vector<PassTime> times;
-    std::uint64_t voxels_estimated = 0;  ///< voxels whose edges were estimated, including the borders of blocks
+    std::uint64_t voxels_estimated = 0;          ///< voxels whose edges were estimated, including the borders of blocks
     std::function<void(double share)> progress;  ///< called with the share of a list that has its faces; empty: never
 };
 
