@@ -113,7 +113,7 @@ class Renderer {
     void set_interruption(std::function<bool()> wanted);
 
     /// `report` is called while a picture waits for its splats, with the share of them that has its faces, 0 to 1. It
-    /// may throw: then render() does, and the next picture begins anew. Empty: never.
+    /// may throw: then render() does, and the next picture begins again. Empty: never.
     void set_progress(std::function<void(double share)> report);
 
     /// Enables RenderStats::draw_counts (if the device can count) and dirty_share for the following pictures. Counting

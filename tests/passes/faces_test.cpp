@@ -239,7 +239,7 @@ TEST(Faces, FitTheEdgesOfABox) {
         }
         ++found;
     }
-    // The voxels beside the edges, but for those at corners.
+    // The voxels beside the edges that are not at corners.
     EXPECT_GE(found, 12U * 9U * 4U);
 }
 

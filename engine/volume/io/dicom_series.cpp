@@ -47,7 +47,7 @@ std::string direction_name(const DicomPlane& plane) {
     return most > 0.999 ? name : "oblique " + name;
 }
 
-/// What some candidates do not have in common.
+/// Differences among candidates.
 struct DicomDifferences {
     bool patient = false, folder = false;
 };

@@ -192,7 +192,7 @@ MemberKind member_kind(const std::string& path) {
     return is_compressed(head) || is_archive(path, head) ? MemberKind::Volume : MemberKind::Other;
 }
 
-/// What files of one series have in common in their names: the extension, else the name without numbers.
+/// The part of the names that the files of one series have in common: the extension, else the name without numbers.
 std::string kind_of_name(const std::string& path) {
     const auto in_lower_case = [](std::string text) {
         std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
