@@ -9,7 +9,7 @@ namespace {
 
 /// The label or the value at a picked place.
 std::string value_text(const edgesplat::Volume& volume, const edgesplat::viewer::Pick& pick) {
-    const std::string value = volume.is_label_mask() ? "" : fmt::format("value {:g}", pick.value);
+    std::string value = volume.is_label_mask() ? "" : fmt::format("value {:g}", pick.value);
     if (!volume.shown_labels) return value;
     const std::uint32_t number = edgesplat::label_at(volume, pick.voxel);
     if (number == 0) return value;

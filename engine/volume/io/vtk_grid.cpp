@@ -126,7 +126,7 @@ std::size_t chosen_vtk_array(const std::string& path, const LoadOptions& options
     // Points go before cells, as in VTK, whatever their order in the file. ParaView marks none in the fields that it
     // writes and shows the first.
     for (auto* list : {&scalars, &shown})
-        std::ranges::stable_partition(*list, [&](std::size_t i) { return !arrays[i].of_cells; });
+        std::stable_partition(list->begin(), list->end(), [&](std::size_t i) { return !arrays[i].of_cells; });
     const std::size_t chosen = scalars.empty() ? shown[0] : scalars[0];
     const bool marked = shown.size() == 1 || !scalars.empty();
     std::erase(shown, chosen);
