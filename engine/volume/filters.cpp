@@ -220,34 +220,40 @@ double mean_of(const Volume& volume) {
     return (sum + lost) / static_cast<double>(std::max<std::size_t>(volume.values.size() - volume.non_finite_count, 1));
 }
 
+namespace {
+
+/// CRC-32 of number_of(0), number_of(1), ... as numbers of type T.
+template <typename T, typename NumberOf>
+std::uint32_t crc32_of(std::size_t count, const NumberOf& number_of) {
+    constexpr std::size_t kPart = std::size_t{1} << 16;
+    std::vector<T> part;
+    uLong crc = crc32(0, nullptr, 0);
+    for (std::size_t first = 0; first < count; first += kPart) {
+        part.resize(std::min(kPart, count - first));
+        for (std::size_t i = 0; i < part.size(); ++i)
+            part[i] = number_of(first + i);
+        crc = crc32(crc, reinterpret_cast<const Bytef*>(part.data()),  // NOLINT: zlib's interface
+                    static_cast<uInt>(part.size() * sizeof(T)));
+    }
+    return static_cast<std::uint32_t>(crc);
+}
+
+}  // namespace
+
 std::uint32_t samples_crc32(const Volume& volume) {
     static_assert(std::endian::native == std::endian::little);
     require_samples(volume, "the checksum of samples");
-    const auto crc_of = [&]<typename T>(const auto& number_of, T) {
-        constexpr std::size_t kPart = std::size_t{1} << 16;
-        std::vector<T> part;
-        uLong crc = crc32(0, nullptr, 0);
-        for (std::size_t first = 0; first < volume.values.size(); first += kPart) {
-            part.resize(std::min(kPart, volume.values.size() - first));
-            for (std::size_t i = 0; i < part.size(); ++i)
-                part[i] = number_of(first + i);
-            crc = crc32(crc, reinterpret_cast<const Bytef*>(part.data()),  // NOLINT: zlib's interface
-                        static_cast<uInt>(part.size() * sizeof(T)));
-        }
-        return static_cast<std::uint32_t>(crc);
-    };
-    if (volume.labels && has_ranks(*volume.labels)) {
+    const std::size_t count = volume.values.size();
+    if (volume.labels && !volume.has_segmentation() && has_ranks(*volume.labels)) {
         const LabelTable& table = *volume.labels;
-        return crc_of(
-            [&](std::size_t i) {
-                if (!volume.has_data(i)) return std::numeric_limits<std::int64_t>::min();
-                return static_cast<std::int64_t>(table.labels[place_of_label(table, volume.values[i])].id);
-            },
-            std::int64_t{});
+        return crc32_of<std::int64_t>(count, [&](std::size_t i) {
+            if (!volume.has_data(i)) return std::numeric_limits<std::int64_t>::min();
+            return static_cast<std::int64_t>(table.labels[place_of_label(table, volume.values[i])].id);
+        });
     }
-    return crc_of(
-        [&](std::size_t i) { return static_cast<float>(volume.in_file_unit(static_cast<double>(volume.sample(i)))); },
-        float{});
+    return crc32_of<float>(count, [&](std::size_t i) {
+        return static_cast<float>(volume.in_file_unit(static_cast<double>(volume.sample(i))));
+    });
 }
 
 Histogram histogram(const Volume& volume, int bins) {

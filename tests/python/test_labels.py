@@ -100,7 +100,7 @@ def test_labels_colour_a_scan(renderer, scan, atlas, names, tmp_path):
     assert np.array_equal(thin, renderer.render(other, **only).color) and not np.array_equal(thin, one.color)
     del how["iso_values"]
     open_value = renderer.render(volume, volume={"only": ["visual*"]}, **how)
-    assert open_value.scene.get("iso_values") == pytest.approx([volume.suggest_iso_values(1)[0].value])
+    assert open_value.scene["iso_values"] == pytest.approx([volume.suggest_iso_values(1)[0][0]])
 
 
 def test_segmentations_may_be_files_and_volumes(renderer, scan, atlas, tmp_path):
