@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -86,12 +85,11 @@ void add_labels(nlohmann::json& json, const Volume& volume) {
 
 Json labels_measured(const Volume& volume, const edgesplat::Clip& clip, const edgesplat::VolumeSource& source) {
     Json json{{"labels", Json::array()}};
-    std::set<std::uint64_t> shown;
-    const std::vector<bool> chosen = chosen_labels(volume, *volume.labels, source.only, source.hide);
-    for (std::size_t place = 0; place < chosen.size(); ++place)
-        if (chosen[place]) shown.insert(volume.labels->labels[place].id);
+    // A mask has its shown labels only.
+    std::vector<bool> shown(volume.labels->labels.size(), true);
+    if (volume.has_segmentation()) shown = chosen_labels(volume, *volume.labels, source.only, source.hide);
     for (const auto& extent : edgesplat::measure::measure_labels(volume, clip)) {
-        if (volume.has_segmentation() && !shown.contains(extent.label.id)) continue;
+        if (!shown[place_of_label(*volume.labels, extent.label.value)]) continue;
         Json entry = described(*volume.labels, extent.label);
         entry["voxels"] = extent.voxels;
         entry["volume_mm3"] = {{"value", extent.volume.value}, {"uncertainty", extent.volume.uncertainty}};

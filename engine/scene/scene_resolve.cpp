@@ -208,6 +208,7 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     for (TransferPoint& point : scene.transfer)
         point.value /= volume.value_scale;
     if (iso.empty() && !document.iso_sigmas.empty()) iso = iso_values_of_sigmas(document.iso_sigmas, volume);
+    if (volume.shown_labels) scene.label_colors = label_colors(*volume.labels);
     if (volume.is_label_mask()) {
         if (!iso.empty() || !scene.transfer.empty())
             fail(
@@ -215,9 +216,6 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
                 "(--labels off) for {} of its numbers",
                 volume.name, iso.empty() ? "a transfer function" : "surfaces");
         iso = {kLabelSurface};
-    }
-    if (volume.shown_labels) scene.label_colors = label_colors(*volume.labels);
-    if (volume.is_label_mask()) {
         const auto chosen = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
         if (chosen) std::ranges::fill(scene.label_colors, *chosen);
     }

@@ -12,8 +12,8 @@ namespace {
 
 using Place = gpu::Buffer::Place;
 
-// Shaders compute number * size of a splat in 32 bits.
 constexpr std::uint64_t kFinishedAtOnce = std::uint64_t{1} << 18U;  // splats; a second on a slow processor
+// Shaders compute number * size of a splat in 32 bits.
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
 
 /// Makes clip planes relative to a block's first voxel.

@@ -110,13 +110,9 @@ namespace {
 
 /// Whether each voxel's matter is shown, 0 or 1. A voxel without a label belongs to the nearest label at most a voxel
 /// away; a shown one is preferred.
-std::vector<std::uint32_t> shown_voxels(const std::vector<std::uint32_t>& numbers, const glm::ivec3& dims,
-                                        const std::vector<bool>& shown, bool unlabelled) {
-    const auto offset = [&](const glm::ivec3& i) {
-        return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
-                   static_cast<std::size_t>(dims.x) +
-               static_cast<std::size_t>(i.x);
-    };
+std::vector<std::uint32_t> shown_voxels(const Volume& scan, const std::vector<bool>& shown, bool unlabelled) {
+    const std::vector<std::uint32_t>& numbers = scan.shown_labels->at;
+    const glm::ivec3 dims = scan.geometry.dims;
     std::vector<std::uint32_t> kept(numbers.size());
     for_voxels(dims, [&](std::size_t at, const glm::ivec3& p) {
         if (numbers[at] > 0) {
@@ -130,7 +126,7 @@ std::vector<std::uint32_t> shown_voxels(const std::vector<std::uint32_t>& number
             const glm::ivec3 way = glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
             const glm::ivec3 there = p + way;
             if (glm::any(glm::lessThan(there, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(there, dims))) continue;
-            const std::uint32_t number = numbers[offset(there)];
+            const std::uint32_t number = numbers[scan.index_of(there.x, there.y, there.z)];
             const int distance = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
             if (number == 0 || distance > nearest) continue;
             const std::uint32_t is_shown = shown[number - 1] ? 1 : 0;
@@ -146,7 +142,7 @@ std::vector<std::uint32_t> shown_voxels(const std::vector<std::uint32_t>& number
 
 Volume with_labels_shown(const Volume& scan, const std::vector<bool>& shown, bool unlabelled, double iso) {
     const glm::ivec3 dims = scan.geometry.dims;
-    const std::vector<std::uint32_t> kept = shown_voxels(scan.shown_labels->at, dims, shown, unlabelled);
+    const std::vector<std::uint32_t> kept = shown_voxels(scan, shown, unlabelled);
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < kept.size(); ++i) {
