@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "engine/volume/io/arrays.h"
 #include "engine/volume/io/binary_file.h"
 #include "engine/volume/io/half.h"
 
