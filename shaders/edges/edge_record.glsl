@@ -21,12 +21,13 @@ uint pack_normal(vec3 n) {
 }
 
 vec3 unpack_normal(uint code) {
-    vec2 p = unpackSnorm2x16(code);
+    vec2 p = vec2(ivec2(int(code) << 16, int(code)) >> 16) * (1.0 / 32767.0);
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
     float fold = max(-n.z, 0.0);
     n.x += n.x >= 0.0 ? -fold : fold;
     n.y += n.y >= 0.0 ? -fold : fold;
-    return normalize(n);
+    // One division, where normalize() has three.
+    return inversesqrt(dot(n, n)) * n;
 }
 
 uint pack_edge(Edge e) {
@@ -39,9 +40,9 @@ Edge unpack_edge(uint normal_code, uint code) {
     Edge e;
     e.state = (code >> 26) & 3u;
     e.n = unpack_normal(normal_code);
-    e.d = float(int(code << 16) >> 16) / 32767.0 * EDGE_DISTANCE_UNIT;
+    e.d = float(int(code << 16) >> 16) * (EDGE_DISTANCE_UNIT / 32767.0);
     uint d2 = (code >> 16) & 1023u;
-    e.d2 = d2 == FACE_NONE ? 1e9 : float(d2) / 1022.0 * FACE_DISTANCE_UNIT;
+    e.d2 = d2 == FACE_NONE ? 1e9 : float(d2) * (FACE_DISTANCE_UNIT / 1022.0);
     return e;
 }
 

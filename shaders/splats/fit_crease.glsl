@@ -51,7 +51,7 @@ vec3 most_different(CreaseSight sight, vec3 a, vec3 b) {
     ivec3 around = sight.p + ivec3(round(sight.middle));
     Different most = none_different(CREASE_TURNED);
     for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(sight.p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
+        Surfel s = surfel_at(sight.p, around + around_at(i), sight.material, 0.0);
         bool rounding = is_rounding(sight.n, s.n);
         see_different(most, s, sight.middle, sight.state, rounding ? 1.0 : max(dot(s.n, a), dot(s.n, b)));
     }
@@ -71,7 +71,7 @@ PlaneFit fit_plane(CreaseSight sight, vec3 seed) {
         mat3 spread = mat3(0.0);
         float sum = 0.0;
         for (int i = 0; i < 125; ++i) {
-            Surfel s = surfel_at(sight.p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
+            Surfel s = surfel_at(sight.p, around + around_at(i), sight.material, 0.0);
             float w = crease_weight(s, sight.middle, sight.state) * max(dot(s.n, fit.n) - CREASE_ALIKE, 0.0) / (1.0 - CREASE_ALIKE);
             normals += w * s.n;
             places += w * s.at;
@@ -146,7 +146,7 @@ float crease_error(CreaseSight sight, CreaseFit crease) {
     float error = 0.0;
     ivec3 p = sight.p, around = p + ivec3(round(sight.middle));
     for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
+        Surfel s = surfel_at(p, around + around_at(i), sight.material, 0.0);
         float off = max(off_crease(crease, s.at), 0.0);
         error += s.there && !s.border ? surfel_weight(s.at - sight.middle, sight.n, s.n) * off * off : 0.0;
     }

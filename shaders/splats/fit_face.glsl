@@ -18,8 +18,11 @@ struct Surfel {
     bool border; // it lies on the volume's border
 };
 
-// The surfel of voxel q, relative to voxel p. `material`: the material that it must bound, from either side.
-Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
+float distance_in(uint code) { return abs(float(int(code << 16) >> 16)) * (EDGE_DISTANCE_UNIT / 32767.0); }
+
+// The surfel of voxel q, relative to voxel p. `material`: the material that it must bound, from either side. `lost`: how
+// far it must lie from its voxel, or it is of no use and may be left out.
+Surfel surfel_at(ivec3 p, ivec3 q, uint material, float lost) {
     Surfel s = Surfel(false, vec3(0.0), vec3(0.0), EDGE_NONE, false);
     bool inside = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
     ivec3 held = clamp(q, ivec3(0), dims - 1);
@@ -27,7 +30,7 @@ Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
     uint state = code.y >> 26 & 3u;
     // The volume's border only bounds the material inside it.
     bool at_border = (code.y & EDGE_BORDER) != 0u;
-    IF_ANY(inside && state >= EDGE_LOWER) {
+    IF_ANY(inside && state >= EDGE_LOWER && distance_in(code.y) >= lost) {
         Edge e = unpack_edge(code.x, code.y);
         uint own = material_at(held);
         // An upper end is the lower end of the material above.
@@ -48,9 +51,15 @@ float surfel_weight(vec3 r, vec3 n, vec3 other) {
     float along = dot(r, n);
     float turned = clamp(-2.0 * dot(n, other), 0.0, 1.0);
     float shorter = 1.0 - 0.5 * turned;
-    float w = 1.0 - (dot(r, r) - along * along * (1.0 - shorter * shorter)) / (FIT_RADIUS * FIT_RADIUS);
+    float w = 1.0 - (dot(r, r) - along * along * (1.0 - shorter * shorter)) * (1.0 / (FIT_RADIUS * FIT_RADIUS));
     w = max(w, 0.0);
     return w * w;
+}
+
+// How far at least the surfel of a voxel at v from the middle lies from it, if it has a weight.
+float least_of_weight(vec3 v, vec3 n) {
+    float along = dot(v, n);
+    return sqrt(max(dot(v, v) - 0.75 * along * along, 0.0)) - FIT_RADIUS - 1e-3;
 }
 
 struct Face {
@@ -75,16 +84,28 @@ struct FitErrors {
     float opposite_sum2;
 };
 
-FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Quadric wall, Quadric own) {
+// A set of the 125 voxels around a voxel.
+struct Around {
+    uint bits[4];
+};
+
+Around none_around() { return Around(uint[4](0u, 0u, 0u, 0u)); }
+
+// The offset of the i-th of them.
+ivec3 around_at(int i) { return ivec3(i % 5, i / 5 % 5, i / 25) - 2; }
+
+// `used`: the voxels around `middle` whose surfels were fitted.
+FitErrors fit_errors(ivec3 p, uint material, Around used, vec3 middle, vec3 n, Quadric one, Quadric wall, Quadric own) {
     FitErrors e = FitErrors(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     ivec3 around = p + ivec3(round(middle));
-    for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
-        vec3 r = s.at - middle;
-        float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
-        IF_ANY(w > 0.0) {
-            float off = quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2), facing = dot(s.n, n);
-            float level = quadric_at(wall, r);
+    for (int k = 0; k < 4; ++k) {
+        uint bits = used.bits[k];
+        while (bits != 0u) {
+            Surfel s = surfel_at(p, around + around_at(32 * k + findLSB(bits)), material, 0.0);
+            bits &= bits - 1u;
+            vec3 r = s.at - middle;
+            float w = surfel_weight(r, n, s.n), facing = dot(s.n, n), level = quadric_at(wall, r);
+            float off = quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2);
             e.weight += w;
             e.one += w * off * off;
             float own_off = quadric_at(own, r) / max(length(quadric_slope(own, r)), 0.2);
@@ -154,7 +175,7 @@ struct FaceBehind {
 FaceBehind face_behind(ivec3 p, uint material, vec3 n, uint state) {
     FaceBehind behind = FaceBehind(1e9, -n, EDGE_NONE);
     for (int i = 1; i <= WALL_STEPS; ++i) {
-        Surfel s = surfel_at(p, p + ivec3(roundEven(-float(i) * n)), material);
+        Surfel s = surfel_at(p, p + ivec3(roundEven(-float(i) * n)), material, 0.0);
         float facing = dot(s.n, n), away = dot(s.at, s.n) / -facing;
         bool faces = facing < (s.state == state ? -WALL_TILTED : -WALL_LEVEL);
         bool nearer = s.there && !s.border && faces && away > 0.0 && away < behind.away;
@@ -193,6 +214,12 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
 
 #include "shaders/splats/fit_crease.glsl"
 
+// For matter beside a voxel, surfels beyond the outermost samples are ignored.
+bool is_known(Surfel s, ivec3 p, bool beside) {
+    vec3 at = vec3(p) + s.at;
+    return !beside || (!s.border && all(greaterThanEqual(at, vec3(0.0))) && all(lessThanEqual(at, vec3(dims - 1))));
+}
+
 // The face of voxel p's kernel, for its own material or for a material beside it. No edge if no surface is in reach.
 Face fit_face(ivec3 p, uint material) {
     Face face = Face(no_edge(), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE, false, 0.0);
@@ -202,27 +229,27 @@ Face fit_face(ivec3 p, uint material) {
     bvec2 crossed = bvec2(false);
     uint own_material = material_at(p);
     bool border = false, beside = own_material != material;
+    Surfel own_surfel = surfel_at(p, p, material, 0.0);
+    float bound = own_surfel.there && is_known(own_surfel, p, beside) ? length(own_surfel.at) + (own_surfel.border ? BORDER_BEHIND : 0.0) + 1e-3 : FACE_SEARCH;
     for (int i = 0; i < 125; ++i) {
-        ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
-        Surfel s = surfel_at(p, q, material);
+        ivec3 o = around_at(i);
+        Surfel s = surfel_at(p, p + o, material, length(vec3(o)) - min(nearest, bound));
         float away = s.there ? length(s.at) : 1e9;
         // The volume's border ends the matter for every kernel, but only a face describes a surface beside it. So
         // surfaces rank first.
         float rank = away + (s.border ? BORDER_BEHIND : 0.0);
-        // The first of equally distant surfels is kept, independent of rounding. For matter beside the voxel, surfels
-        // beyond the outermost samples are ignored.
-        vec3 at = vec3(p) + s.at;
-        bool known = !beside || (!s.border && all(greaterThanEqual(at, vec3(0.0))) && all(lessThanEqual(at, vec3(dims - 1))));
-        bool nearer = away < FACE_SEARCH && known && rank < nearest - 1e-4;
+        // The first of equally distant surfels is kept, independent of rounding.
+        bool nearer = away < FACE_SEARCH && is_known(s, p, beside) && rank < nearest - 1e-4;
         nearest = nearer ? rank : nearest;
         middle = nearer ? s.at : middle;
         n = nearer ? s.n : n;
         state = nearer ? s.state : state;
         border = nearer ? s.border : border;
-        uint other = material_at(clamp(q, ivec3(0), dims - 1));
-        bool next = all(lessThanEqual(abs(o), ivec3(1)));
-        crossed.x = crossed.x || (next && other < material);
-        crossed.y = crossed.y || (next && other > material);
+    }
+    for (int i = 0; i < 27; ++i) {
+        uint other = material_at(clamp(p + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), dims - 1));
+        crossed.x = crossed.x || other < material;
+        crossed.y = crossed.y || other > material;
     }
     bool found = nearest < 1e9;
     if (border) {
@@ -235,15 +262,20 @@ Face fit_face(ivec3 p, uint material) {
     IF_ANY(found || crossed.x || crossed.y) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
+        Around used = none_around();
         Different different = none_different(CREASE_ROUNDED);
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
-            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+            ivec3 q = around + around_at(i);
+            Surfel s = surfel_at(p, q, material, TWO_VALUES == 1u ? 0.0 : least_of_weight(vec3(q - p) - middle, n));
             vec3 r = s.at - middle;
             float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
-            add_surfel(all, r, s.n, w);
-            add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
-            mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
+            IF_ANY(w > 0.0) {
+                used.bits[i >> 5] |= w > 0.0 ? 1u << (i & 31) : 0u;
+                add_surfel(all, r, s.n, w);
+                add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
+                mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
+            }
             if (TWO_VALUES == 1u) see_different(different, s, middle, state, dot(s.n, n));
         }
         // If no opposite surfel is in reach, a layer ends at its lower values.
@@ -254,7 +286,7 @@ Face fit_face(ivec3 p, uint material) {
         float slope_there;
         Quadric centred = field_quadric(p, iso, upper ? -1.0 : 1.0, slope_there);
         Quadric own = quadric_about(centred, middle);
-        FitErrors e = fit_errors(p, material, middle, n, one, wall, own);
+        FitErrors e = fit_errors(p, material, used, middle, n, one, wall, own);
         // The two faces of a wall are level sets of one quadric, fitted to the nearer face.
         float level = e.opposite_sum / max(e.opposite, 1e-20);
         float wall_error = e.same + max(e.opposite_sum2 - e.opposite_sum * level, 0.0);

@@ -29,8 +29,12 @@ Face fit_surface(ivec3 p, uint material) {
     float nearest = KERNEL_RADIUS;
     uint state = EDGE_LOWER;
     bool found = false;
+    // Its own surfel bounds the search.
+    Surfel own_surfel = surfel_at(p, p, material, 0.0);
+    float bound = own_surfel.there && !own_surfel.border ? length(own_surfel.at) + 1e-3 : KERNEL_RADIUS;
     for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(p, p + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        ivec3 o = around_at(i);
+        Surfel s = surfel_at(p, p + o, material, length(vec3(o)) - min(nearest, bound));
         bool nearer = s.there && !s.border && length(s.at) < nearest - 1e-4;
         found = found || nearer;
         nearest = nearer ? length(s.at) : nearest;
@@ -44,10 +48,11 @@ Face fit_surface(ivec3 p, uint material) {
         Moments sums = no_moments();
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
-            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+            ivec3 q = around + around_at(i);
+            Surfel s = surfel_at(p, q, material, length(vec3(q - p) - middle) - SURFACE_FIT);
             vec3 r = s.at - middle;
-            float w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) / (SURFACE_FIT * SURFACE_FIT), 0.0) : 0.0;
-            add_surfel(sums, r, s.n, w * w);
+            float w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) * (1.0 / (SURFACE_FIT * SURFACE_FIT)), 0.0) : 0.0;
+            IF_ANY(w > 0.0) add_surfel(sums, r, s.n, w * w);
         }
         Quadric q = quadric_of(sums);
         Foot foot = foot_of(q, -middle, vec3(0.0));
