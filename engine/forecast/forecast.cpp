@@ -185,7 +185,7 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     if (splats.from != SplatCount::From::Frame) {
         // Of surface splats, only those between two values have creases.
         out.splats.extent.creases &= collection.two_values;
-        out.splats.extent.border = collection.surfaces && has_matter_at_border(*request.volume, collection.params);
+        out.splats.extent.border = collection.surfaces ? faces_with_matter(*request.volume, collection.params) : 0;
     }
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         out.draws.push_back(

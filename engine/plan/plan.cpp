@@ -264,7 +264,7 @@ std::uint32_t material_of(std::span<const float> iso, float scaled) {
     return static_cast<std::uint32_t>(std::ranges::count_if(iso, [&](float value) { return value <= scaled; }));
 }
 
-bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params) {
+std::uint32_t faces_with_matter(const Volume& volume, const shader::SceneParams& params) {
     const glm::ivec3 last = volume.geometry.dims - 1;
     const auto value = [&](const glm::ivec3& i) { return scaled_sample(volume, value_at(volume, i)); };
     const auto is_matter = [&](float f) { return (params.visible_mask >> material_of(params.iso, f) & 1U) != 0; };
@@ -281,9 +281,20 @@ bool has_matter_at_border(const Volume& volume, const shader::SceneParams& param
             }
         return false;
     };
+    std::uint32_t faces = 0;
     for (int axis = 0; axis < 3; ++axis)
-        if (in_layer(axis, false) || in_layer(axis, true)) return true;
-    return false;
+        for (const bool high : {false, true})
+            if (in_layer(axis, high)) faces |= face_of_volume(axis, high);
+    return faces;
+}
+
+std::uint32_t faces_in_sight(const glm::ivec3& dims, const glm::dvec3& eye) {
+    std::uint32_t faces = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(eye[axis] > -0.5)) faces |= face_of_volume(axis, false);
+        if (!(eye[axis] < dims[axis] - 0.5)) faces |= face_of_volume(axis, true);
+    }
+    return faces;
 }
 
 namespace {
@@ -432,10 +443,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
     if (plan.variant.surfaces) plan_matter(volume, scene, plan);
     const glm::dvec3 eye = geometry.to_index(view.eye);
-    const bool inside = glm::all(glm::greaterThan(eye, glm::dvec3(-0.5))) &&
-                        glm::all(glm::lessThan(eye, glm::dvec3(geometry.dims) - 0.5));
-    plan.variant.begins =
-        plan.variant.surfaces && (plan.variant.clip.any() || (inside ? may_be_matter(volume, p, eye) : splats.border));
+    const std::uint32_t entered = faces_in_sight(geometry.dims, eye);
+    const bool begins = entered == 0 ? may_be_matter(volume, p, eye) : (entered & splats.border) != 0;
+    plan.variant.begins = plan.variant.surfaces && (plan.variant.clip.any() || begins);
     if (plan.variant.surfaces && splats.count >= shader::NUMBERED_SPLATS - shader::MAX_MATERIALS)
         fail("{} surface splats are too many, expected less than 2^28: choose --opaque kernels", splats.count);
     const PaperShape paper;

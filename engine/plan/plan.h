@@ -74,9 +74,17 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
 /// Material of a scaled sample.
 std::uint32_t material_of(std::span<const float> iso, float scaled);
 
-/// Whether matter of the visible materials may lie at the volume's border, half a voxel beyond the outermost samples,
-/// to which the field continues linearly.
-bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params);
+/// The bit of a face of the volume's border: the low or high one along an axis.
+constexpr std::uint32_t face_of_volume(int axis, bool high) {
+    return 1U << (2 * axis + (high ? 1 : 0));
+}
+
+/// The faces where matter of the visible materials may lie, half a voxel beyond the outermost samples. To there the
+/// field continues linearly.
+std::uint32_t faces_with_matter(const Volume& volume, const shader::SceneParams& params);
+
+/// The faces through which rays from `eye` (index space) may enter the volume; 0 if the eye is in it.
+std::uint32_t faces_in_sight(const glm::ivec3& dims, const glm::dvec3& eye);
 
 /// Whether the voxel nearest to the eye is of an opaque material and not clipped. Buried voxels are then visible.
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
@@ -117,7 +125,7 @@ struct SplatExtent {
     bool creases = true;         ///< some may have a crease: a plane beside their face
     bool traced = true;          ///< some may have a face that rays must find
     bool surfaces = false;       ///< they are surface splats
-    bool border = true;          ///< matter may lie at the volume's border
+    std::uint32_t border = ~0U;  ///< faces_with_matter
 };
 
 /// Throws Error if the view has more sheets than the sort allows. `farthest_reach`: upper bound of the kernels' reach,

@@ -24,8 +24,8 @@ struct SplatLists {
     gpu::GpuImage edges, buried;
     gpu::Buffer scene, run_offsets, listed_bricks, transfer;
     gpu::Buffer splats, traits, values, labels, occlusion, shadows;
-    bool surfaces = false;  ///< CollectionPlan::surfaces
-    bool border = true;     ///< has_matter_at_border; only with surface splats
+    bool surfaces = false;       ///< CollectionPlan::surfaces
+    std::uint32_t border = ~0U;  ///< faces_with_matter; only with surface splats
     std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0, traced_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive bounding box of the splats' voxels
     SplatBricks bricks;                  ///< the list's bricks

@@ -94,7 +94,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole, stale);
     list_bricks(wanted, volume);
-    lists_.border = wanted.surfaces && has_matter_at_border(*volume.volume(), wanted.params);
+    lists_.border = wanted.surfaces ? faces_with_matter(*volume.volume(), wanted.params) : 0;
     auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
     collected_ = wanted;
@@ -108,7 +108,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     lists_.occlusion = {};
     lists_.shadows = {};
     const CollectionBlock whole = whole_block(plan.dims);
-    lists_.border = plan.surfaces && has_matter_at_border(*volume.volume(), plan.params);
+    lists_.border = plan.surfaces ? faces_with_matter(*volume.volume(), plan.params) : 0;
     list_bricks(plan, volume);
     clear_counts();
     bind(volume);

@@ -110,5 +110,31 @@ TEST(Thin, ASliceFromTheSideIsABar) {
     EXPECT_NEAR(high * pixel, kSliceSpacing.z, 0.1 * kSliceSpacing.z + pixel);
 }
 
+// A block that the volume's low end along x cuts. Only rays that enter there may begin in matter.
+TEST(Thin, TheBorderIsSearchedOnlyWhereRaysMayEnterMatter) {
+    Volume volume;
+    volume.geometry.dims = glm::ivec3(24);
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x) {
+                const double inside = std::min(9.3 - x, 7.4 - std::max(std::abs(y - 11.5), std::abs(z - 11.5)));
+                volume.values.push_back(static_cast<float>(std::clamp(0.5 + inside, 0.0, 1.0)));
+            }
+    finish_volume(volume);
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(std::move(volume));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 1, 1}, 8}};
+    for (const double side : {-1.0, 1.0}) {
+        shot.camera = look(*shot.volume, {11.5 + side * 60, 11.5, 11.5}, glm::dvec3(11.5), 40);
+        const RenderResult result = render(shot);
+        const bool searched = std::ranges::any_of(
+            result.stats.passes, [](const PassTime& pass) { return pass.name == "5_begin_surfaces"; });
+        EXPECT_EQ(searched, side < 0);
+        EXPECT_EQ(result.color.at(32, 32, 3), 1.0F) << side;
+        EXPECT_EQ(result.color.at(3, 32, 3), 0.0F) << side;
+    }
+}
+
 }  // namespace
 }  // namespace edgesplat::test
