@@ -41,6 +41,12 @@ void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
         ->type_name("PROFILE")
         ->group(kGroup);
     add_device_list(command);
+    command
+        .add_flag("--keep-splats", choice.keep_splats,
+                  "Keep found surfaces on disk, and use those of earlier runs with the same samples, iso-values and "
+                  "settings: the picture is the same and appears sooner. At most 4 GiB in ~/.cache/edgesplat/splats "
+                  "(EDGESPLAT_CACHE)")
+        ->group(kGroup);
     command.add_flag("--validation", choice.validation, "Check every Vulkan call; any message makes the program fail")
         ->group(kGroup);
     command

@@ -24,6 +24,8 @@ struct DeviceChoice {
     /// Searches every picture for non-finite numbers. render() then throws Error that names the first pass and splat
     /// that produced one. For debugging; when false, nothing is run or read back for this check.
     bool check_numbers = false;
+    /// Keeps found surfaces in the folder of files between runs, and uses those of earlier runs.
+    bool keep_splats = false;
     std::string profile;  ///< name of a profile in gpu/device_profile.h; empty: the device's own profile
 };
 

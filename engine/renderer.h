@@ -44,6 +44,7 @@ struct RenderStats {
     /// voxels whose edges were estimated for this picture, including the borders of blocks
     std::uint64_t voxels_estimated = 0;
     std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
+    bool splats_read = false;         ///< from a file of an earlier run (DeviceChoice::keep_splats)
     std::uint64_t splats_culled = 0;  ///< splats in bricks that are culled: outside the picture or hidden
     std::uint32_t sheets = 0, sheet_groups = 0;
     int level = 0;  ///< level of the volume that was drawn; its voxels span 2^level voxels along each axis

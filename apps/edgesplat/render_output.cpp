@@ -58,6 +58,7 @@ ordered_json to_json(const RenderedFrame& frame) {
                          {"blocks", stats.blocks},
                          {"blocks_held", stats.blocks_held},
                          {"splats_collected", stats.splats_collected},
+                         {"splats_read", stats.splats_read},
                          {"splats_culled", stats.splats_culled},
                          {"splats_drawn", stats.splats_drawn},
                          {"edge_splats", stats.edge_splats},

@@ -1,6 +1,7 @@
 // Options that a renderer's user sets for the next pictures (engine/renderer.h).
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <limits>
 
@@ -16,6 +17,7 @@ struct RenderOptions {
     std::uint64_t memory_budget = 0;                            ///< bytes; 0: the device's memory
     bool counting = false;                                      ///< Renderer::count_fragments
     bool check_numbers = false;                                 ///< DeviceChoice::check_numbers
+    std::filesystem::path kept_splats;                          ///< folder of DeviceChoice::keep_splats; empty: none
     PartExchange* exchange = nullptr;                           ///< Renderer::divide_sheets
 
     /// Throws Interrupted if an interruption is requested.

@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
-#include "engine/gpu/pipeline_cache_file.h"
+#include "engine/checked_file.h"
 
 namespace edgesplat::gpu {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Drivers check that cache data is their own, but not all check that it is undamaged: hence the checksum.
+constexpr std::string_view kKind = "ESPLATPC";
+
+}  // namespace
 
 PipelineCache::PipelineCache(const Device& device, const fs::path& folder) {
     std::vector<std::uint8_t> data;
@@ -17,7 +24,7 @@ PipelineCache::PipelineCache(const Device& device, const fs::path& folder) {
             uuid += fmt::format("{:02x}", byte);
         file_ = folder / fmt::format("pipelines-{:08x}-{:08x}-{:08x}-{}.bin", properties.vendorID, properties.deviceID,
                                      properties.driverVersion, uuid);
-        data = read_pipeline_cache_file(file_);
+        data = read_checked_file(file_, kKind);
     }
     loaded_ = data.size();
     cache_ = vk::raii::PipelineCache(device.handle(), vk::PipelineCacheCreateInfo({}, data.size(), data.data()));
@@ -33,7 +40,7 @@ PipelineCache::~PipelineCache() {
 bool PipelineCache::save() {
     if (!changed_ || file_.empty() || !*cache_) return true;
     changed_ = false;
-    return write_pipeline_cache_file(file_, cache_.getData());
+    return write_checked_file(file_, kKind, cache_.getData());
 }
 
 }  // namespace edgesplat::gpu

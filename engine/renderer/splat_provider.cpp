@@ -148,7 +148,7 @@ double SplatProvider::provide_undivided(const FrameRequest& request) {
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
-    cost_ = {.times = {}, .voxels_estimated = 0, .progress = options_->progress};
+    cost_ = {.times = {}, .voxels_estimated = 0, .progress = options_->progress, .kept = options_->kept_splats};
     if (other_.volume.volume()) std::swap(shown_, other_);  // resume the unfinished level
     stats.wanted_level =
         level_for(original()->geometry, levels_.count(), request.camera, request.size, drawn_settings(request).detail);
@@ -163,6 +163,7 @@ void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
     stats.level = shown_.volume.level();
     stats.in_blocks = shown_.volume.in_blocks();
     stats.voxels_estimated = cost_.voxels_estimated;
+    stats.splats_read = cost_.read;
     if (stats.setup_milliseconds > 0) stats.passes = cost_.times;
     if (!stats.in_blocks) return;
     stats.blocks = shown_.splats.blocks().size();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/renderer/splat_provider.h"
+#include "footprints/cache_folder.h"
 
 namespace edgesplat {
 
@@ -9,6 +10,7 @@ struct RendererState {
     explicit RendererState(const DeviceChoice& choice, std::uint64_t messages_before = 0)
         : session(choice, messages_before) {
         options.check_numbers = choice.check_numbers;
+        if (choice.keep_splats && !cache_folder().empty()) options.kept_splats = cache_folder() / "splats";
     }
 
     RenderOptions options;

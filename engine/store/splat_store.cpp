@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/gpu/read_back.h"
 #include "engine/plan/resource_table.h"
 
 namespace edgesplat {
@@ -13,6 +14,7 @@ namespace {
 using Place = gpu::Buffer::Place;
 
 constexpr std::uint64_t kFinishedAtOnce = std::uint64_t{1} << 18U;  // splats; a second on a slow processor
+constexpr std::uint64_t kCopiedAtOnce = std::uint64_t{4} << 20U;    // bytes of a kept list
 // Shaders compute number * size of a splat in 32 bits.
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
 
@@ -69,10 +71,10 @@ bool SplatStore::collect(VolumeStore& volume, const CollectionPlan& wanted, Setu
     if (!stale.lists && stale.transfer) classify(wanted);
     if (!volume.changed() && !stale.lists) return false;
     // The spline's coefficients depend on all samples.
-    if (volume.changed() && !stale.lists && !wanted.takes_coefficients())
+    if (volume.changed() && !stale.lists && !wanted.takes_coefficients() && holds_fields(wanted))
         collect_changes(volume, cost);
     else
-        recollect(volume, wanted, volume.changed() ? StaleResults{} : stale, cost);
+        recollect(volume, wanted, volume.changed() || !holds_fields(wanted) ? StaleResults{} : stale, cost);
     volume.forget_changes();
     return true;
 }
@@ -88,16 +90,83 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     forget_light();
     lists_.occlusion = {};
     lists_.shadows = {};
-    if (wanted.takes_coefficients()) volume.provide_coefficients();
-    if (wanted.labels != 0) volume.provide_labels();
     const CollectionBlock whole = whole_block(wanted.dims);
+    const std::string key = cost.kept.empty() ? "" : splats_key(session_->device(), *volume.volume(), wanted);
+    auto kept = key.empty() ? std::nullopt : read_splats(cost.kept, key, wanted);
+    // Passes that draw read the coefficients only of surface splats.
+    if (wanted.takes_coefficients() && (!kept || wanted.surfaces)) volume.provide_coefficients();
+    if (wanted.labels != 0) volume.provide_labels();
     session_->bindings().write_volume(volume.images());
+    if (kept) {
+        take_kept(wanted, std::move(*kept));
+        collected_ = wanted;
+        cost.read = true;
+        return;
+    }
     prepare(wanted, whole, stale);
     list_bricks(wanted, volume);
     lists_.border = wanted.surfaces ? faces_with_matter(*volume.volume(), wanted.params) : 0;
     auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
     collected_ = wanted;
+    if (!key.empty()) keep_splats(cost.kept, key, kept_list(wanted));
+}
+
+bool SplatStore::holds_fields(const CollectionPlan& plan) const {
+    return std::ranges::all_of(field_image_rows(),
+                               [&](const auto& row) { return !row.held(plan) || lists_.*row.image; });
+}
+
+KeptSplats SplatStore::kept_list(const CollectionPlan& plan) const {
+    KeptSplats kept{.splats = lists_.splat_count,
+                    .with_edge = lists_.edge_splat_count,
+                    .with_crease = lists_.crease_splat_count,
+                    .traced = lists_.traced_splat_count,
+                    .low = lists_.box_low,
+                    .high = lists_.box_high,
+                    .border = lists_.border,
+                    .bricks = {lists_.bricks.bricks().begin(), lists_.bricks.bricks().end()},
+                    .lists = {}};
+    for (const SplatListRow& row : splat_list_rows()) {
+        auto& list = kept.lists.emplace_back(lists_.splat_count * row.bytes(plan));
+        for (std::uint64_t done = 0; done < list.size(); done += kCopiedAtOnce) {
+            const auto part = gpu::read_back<std::uint8_t>(session_->device(), session_->commands(), lists_.*row.list,
+                                                           done, std::min(kCopiedAtOnce, list.size() - done));
+            std::ranges::copy(part, list.begin() + static_cast<std::ptrdiff_t>(done));
+        }
+    }
+    return kept;
+}
+
+void SplatStore::take_kept(const CollectionPlan& plan, KeptSplats kept) {
+    CollectionPlan without_fields = plan;
+    without_fields.edge_field = without_fields.buried = false;
+    lists_.edges = {};
+    lists_.buried = {};
+    prepare(without_fields, whole_block(plan.dims));
+    place_block(plan, whole_block(plan.dims));
+    reserve(plan, kept.splats);
+    gpu::Commands& commands = session_->commands();
+    const gpu::Buffer staging(session_->device(), kCopiedAtOnce, Place::Host, kStagingBuffer.name);
+    for (std::size_t i = 0; i < kept.lists.size(); ++i) {
+        const std::span<const std::uint8_t> list = kept.lists[i];
+        for (std::uint64_t done = 0; done < list.size(); done += kCopiedAtOnce) {
+            const std::uint64_t bytes = std::min(kCopiedAtOnce, list.size() - done);
+            std::ranges::copy(list.subspan(done, bytes), staging.mapped<std::uint8_t>(bytes).begin());
+            commands.run([&] {
+                commands.copy(staging, lists_.*splat_list_rows()[i].list, {{0, done, bytes}});
+                commands.barrier();
+            });
+        }
+    }
+    lists_.splat_count = kept.splats;
+    lists_.edge_splat_count = kept.with_edge;
+    lists_.crease_splat_count = kept.with_crease;
+    lists_.traced_splat_count = kept.traced;
+    lists_.box_low = kept.low;
+    lists_.box_high = kept.high;
+    lists_.border = kept.border;
+    lists_.bricks.assign(std::move(kept.bricks));
 }
 
 void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {

@@ -2,12 +2,14 @@
 // by block.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <optional>
 
 #include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
+#include "engine/store/kept_splats.h"
 #include "engine/store/light.h"
 #include "engine/store/volume_store.h"
 #include "engine/volume/sample_source.h"
@@ -23,6 +25,8 @@ struct SetupCost {
     std::vector<PassTime> times;
     std::uint64_t voxels_estimated = 0;          ///< voxels whose edges were estimated, including the borders of blocks
     std::function<void(double share)> progress;  ///< called with the share of a list that has its faces; empty: never
+    std::filesystem::path kept;                  ///< folder of kept lists; empty: none (kept_splats.h)
+    bool read = false;                           ///< the list is one of them
 };
 
 /// The part of the list that a block added.
@@ -116,6 +120,12 @@ class SplatStore {
     std::optional<CollectedBlock> collect_block(const CollectionPlan& plan, const CollectionBlock& block, bool exact,
                                                 std::uint64_t most_splats, SetupCost& cost,
                                                 const StaleResults& stale = {});
+    /// Whether the edges and the mask that the plan needs are on the device. They are not if the list was read.
+    bool holds_fields(const CollectionPlan& plan) const;
+    /// The list as a file keeps it.
+    KeptSplats kept_list(const CollectionPlan& plan) const;
+    /// Makes it the list; edges and mask, on which it depends, are not on the device then.
+    void take_kept(const CollectionPlan& plan, KeptSplats kept);
     /// Sets the list's bounding box and bricks to those of its only block.
     void hold_list(CollectedBlock& collected);
     std::vector<float> read_block(const VolumeStore& volume, std::size_t block, std::optional<std::size_t> after);

@@ -49,6 +49,7 @@ class Statistics:
     splats_culled: int | None = None
     splats_drawn: int | None = None
     edge_splats: int | None = None
+    splats_read: bool | None = None
     sheets: int | None = None
     device_bytes: int | None = None
     validation_messages: int | None = None
@@ -186,6 +187,7 @@ class Renderer:
     memory_budget: limit of device memory, MiB; 0: all memory of the device.
     validation: checks every Vulkan call (`validation_messages` counts the messages).
     check_numbers: raises Error for a number that is not finite, naming the pass.
+    keep_splats: keeps found surfaces on disk and uses those of earlier runs, like ``--keep-splats``.
     """
 
     def __init__(
@@ -195,10 +197,11 @@ class Renderer:
         memory_budget: float = 0,
         validation: bool = False,
         check_numbers: bool = False,
+        keep_splats: bool = False,
     ) -> None:
         if not 0 <= memory_budget <= 1e9:
             raise Error(f"memory_budget: {memory_budget}: expected MiB from 0 to 1e9")
-        self._core = _core.Renderer(str(device), memory_budget, validation, check_numbers)
+        self._core = _core.Renderer(str(device), memory_budget, validation, check_numbers, keep_splats)
 
     @property
     def device(self) -> Device:

@@ -254,9 +254,15 @@ void add_renderers(py::module_& module) {
         .def_property_readonly("count", [](const Movie& self) { return self.film.count; })
         .def_property_readonly("fps", [](const Movie& self) { return self.film.fps; });
     py::class_<SharedRenderer>(module, "Renderer")
-        .def(py::init([](const std::string& device, double budget_mib, bool validation, bool check_numbers) {
-            return std::make_unique<SharedRenderer>(DeviceChoice{device, validation, check_numbers}, budget_mib);
-        }))
+        .def(py::init(
+            [](const std::string& device, double budget_mib, bool validation, bool check_numbers, bool keep_splats) {
+                return std::make_unique<SharedRenderer>(DeviceChoice{.device = device,
+                                                                     .validation = validation,
+                                                                     .check_numbers = check_numbers,
+                                                                     .keep_splats = keep_splats,
+                                                                     .profile = {}},
+                                                        budget_mib);
+            }))
         .def("device",
              [](SharedRenderer& self) {
                  return as_dict(self.use([](Renderer& renderer) { return renderer.device(); }));

@@ -41,6 +41,16 @@ def test_validation(ball):
         assert one.validation_messages == 0
 
 
+def test_keep_splats(ball, tmp_path, monkeypatch):
+    monkeypatch.setenv("EDGESPLAT_CACHE", str(tmp_path))
+    pictures = []
+    for _ in range(2):
+        with Renderer(keep_splats=True) as one:
+            pictures.append(one.render(ball, size=SIZE))
+    assert [picture.statistics.splats_read for picture in pictures] == [False, True]
+    assert (pictures[0].color == pictures[1].color).all()
+
+
 def test_closed(ball):
     one = Renderer()
     one.render(ball, size=SIZE)

@@ -115,6 +115,21 @@ TEST_F(CliRender, StatisticsAreComplete) {
     EXPECT_TRUE(frame["passes_ms"].contains("5_draw_surfaces")) << frame["passes_ms"].dump();
 }
 
+TEST_F(CliRender, KeepsSplatsForTheNextRun) {
+    const std::string arguments = "builtin:torus:32 --size 32x32 --keep-splats -q ";
+    const auto draw = [&](const std::string& view, const std::string& name) {
+        const ProgramRun run = run_shell("EDGESPLAT_CACHE=kept '" EDGESPLAT_PROGRAM "' render " + arguments +
+                                         "--view " + view + " -o " + name + ".exr --json " + name + ".json");
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(text_of(folder_ / (name + ".json")))["frames"][0]["splats_read"].get<bool>();
+    };
+    EXPECT_FALSE(draw("front", "a"));
+    EXPECT_TRUE(draw("front", "b"));
+    EXPECT_TRUE(draw("oblique", "c"));
+    EXPECT_EQ(run("compare a.exr b.exr").status, 0);
+    EXPECT_NE(run("compare a.exr c.exr").status, 0);
+}
+
 TEST_F(CliRender, VoxelCoordinatesAndWorldCoordinatesAgree) {
     // The default grid of builtin:sphere starts at 0,0,0 with a spacing of 1 mm, so index and world coordinates are
     // equal.
