@@ -175,6 +175,7 @@ SplineTaps spline_taps(double place, int size) {
     SplineTaps taps{
         {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6},
         {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2},
+        {},
         {}};
     for (int k = 0; k < 4; ++k)
         taps.places[static_cast<std::size_t>(k)] = std::clamp(cell + k - 1, 0, last);
@@ -202,7 +203,7 @@ SplineTaps spline_taps(double place, int size) {
         taps.slopes = {};
     }
     for (std::size_t k = 0; k < 4; ++k)
-        taps.weights[k] += beyond * taps.slopes[k];
+        taps.beyond[k] = beyond * taps.slopes[k];
     return taps;
 }
 

@@ -63,12 +63,13 @@ double scaled_iso_value(const Volume& volume, double iso_value);
 std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims);
 
 /// Indices of the four coefficients around a position of that spline on one axis, with their weights for the value and
-/// the slope.
+/// the slope at the nearest place between the outermost samples.
 struct SplineTaps {
     std::array<double, 4> weights{}, slopes{};
-    std::array<int, 4> places{};  ///< index of each coefficient; those beyond a border have weight 0
+    std::array<int, 4> places{};     ///< index of each coefficient; those beyond a border have weight 0
+    std::array<double, 4> beyond{};  ///< slopes x the way from there to the position: how the spline continues linearly
 };
-/// `place` may be any number: the spline continues linearly beyond the outermost samples. size >= 1.
+/// `place` may be any number. size >= 1.
 SplineTaps spline_taps(double place, int size);
 
 /// Mean of the samples with data; 0 if there are none. Of a packed volume as its file states it.

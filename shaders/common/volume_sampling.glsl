@@ -5,7 +5,8 @@
 // Along one axis: the four coefficients around a point of the spline, and their weights for value and slope.
 struct SplineTaps {
     ivec4 places;  // a place beyond a border has weight 0
-    vec4 weights, slopes;
+    vec4 weights, slopes;  // at the point, or at the outermost sample before it
+    vec4 beyond;           // what the way from there to the point adds to the weights
 };
 
 // A coefficient beyond a border is the linear extrapolation of the two before it. `cell`: 0 to n - 1.
@@ -15,8 +16,7 @@ vec4 within_border(vec4 w, int cell, int n) {
     return cell == n - 1 ? vec4(w.x - w.z, w.y + 2.0 * w.z, 0.0, w.w) : w;
 }
 
-// At `origin` + p along an axis of n voxels. Beyond the outermost samples the spline is linear. Mirrors
-// engine/volume/filters.h.
+// At `origin` + p along an axis of n voxels. Mirrors engine/volume/filters.h.
 SplineTaps spline_taps(int origin, float p, int n) {
     float held = clamp(p, float(-origin), float(n - 1 - origin)), c = floor(held), t = held - c, s = 1.0 - t;
     int cell = origin + int(c);
@@ -24,20 +24,25 @@ SplineTaps spline_taps(int origin, float p, int n) {
     taps.places = clamp(cell + ivec4(-1, 0, 1, 2), 0, n - 1);
     taps.weights = within_border(vec4(s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t) / 6.0, cell, n);
     taps.slopes = within_border(vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t), cell, n);
-    taps.weights = n == 1 ? vec4(0.0, 1.0, 0.0, 0.0) : taps.weights + (p - held) * taps.slopes;
+    taps.weights = n == 1 ? vec4(0.0, 1.0, 0.0, 0.0) : taps.weights;
     taps.slopes = n == 1 ? vec4(0.0) : taps.slopes;
+    taps.beyond = (p - held) * taps.slopes;
     return taps;
 }
+
+// The spline is linear beyond the outermost samples: f(q) + grad f(q) . (p - q), where q is the point of their box
+// nearest to p. Products of the axes' ways beyond would let matter grow at the box's edges.
 
 float bspline(vec3 p) {
     SplineTaps x = spline_taps(0, p.x, dims.x), y = spline_taps(0, p.y, dims.y), z = spline_taps(0, p.z, dims.z);
     float sum = 0.0;
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
-            float line = 0.0;
+            vec2 line = vec2(0.0);
             for (int i = 0; i < 4; ++i)
-                line += x.weights[i] * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
-            sum += y.weights[j] * z.weights[k] * line;
+                line += vec2(x.weights[i], x.beyond[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            float wy = y.weights[j], wz = z.weights[k];
+            sum += line.x * (wy * wz + y.beyond[j] * wz + wy * z.beyond[k]) + line.y * wy * wz;
         }
     return sum;
 }
@@ -48,11 +53,12 @@ vec4 bspline_slope(ivec3 origin, vec3 p) {
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
-            vec2 line = vec2(0.0);
+            vec3 line = vec3(0.0);
             for (int i = 0; i < 4; ++i)
-                line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
-            float wy = y.weights[j], wz = z.weights[k];
-            sum += vec4(line.y * wy * wz, line.x * y.slopes[j] * wz, line.x * wy * z.slopes[k], line.x * wy * wz);
+                line += vec3(x.weights[i], x.beyond[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            float wy = y.weights[j], wz = z.weights[k], w = wy * wz, all = w + y.beyond[j] * wz + wy * z.beyond[k];
+            sum += vec4(line.z * all, y.slopes[j] * (line.x * (wz + z.beyond[k]) + line.y * wz),
+                        z.slopes[k] * (line.x * (wy + y.beyond[j]) + line.y * wy), line.x * all + line.y * w);
         }
     return sum;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/reference/3_select_footprints.h"
 #include "engine/scene/views.h"
@@ -133,6 +134,38 @@ TEST(Thin, TheBorderIsSearchedOnlyWhereRaysMayEnterMatter) {
         EXPECT_EQ(searched, side < 0);
         EXPECT_EQ(result.color.at(32, 32, 3), 1.0F) << side;
         EXPECT_EQ(result.color.at(3, 32, 3), 0.0F) << side;
+    }
+}
+
+/// Eight corners of value 1 and a middle of value 3, between zeros.
+VolumePointer corners_and_middle() {
+    return sampled({3, 3, 3}, [](const glm::dvec3& x) {
+        const glm::dvec3 d = glm::abs(x - 1.0);
+        return d == glm::dvec3(0) ? 3.0 : d == glm::dvec3(1) ? 1.0 : 0.0;
+    });
+}
+
+TEST(Thin, CornersOfASmallGridStayApart) {
+    Shot shot;
+    shot.volume = corners_and_middle();
+    shot.scene.iso_values = {0.7};
+    shot.scene.materials = {{}, {{1, 1, 1}, 20}};
+    shot.width = shot.height = 96;
+    for (const char* view : {"front", "left", "top"}) {
+        SCOPED_TRACE(view);
+        shot.camera = named_view(view, {.volume = shot.volume.get(),
+                                        .scene = &shot.scene,
+                                        .fov_y = 5,
+                                        .width = shot.width,
+                                        .height = shot.height,
+                                        .fill = true});
+        const Image color = render(shot).color;
+        // The middle of each side, and the corners of the picture.
+        const int low = 4, middle = 48, high = 91;
+        for (const auto& [x, y] : {std::pair(low, middle), {high, middle}, {middle, low}, {middle, high}})
+            EXPECT_EQ(color.at(x, y, 3), 0) << x << ", " << y;
+        for (const auto& [x, y] : {std::pair(low, low), {high, low}, {low, high}, {high, high}, {middle, middle}})
+            EXPECT_GT(color.at(x, y, 3), 0.9F) << x << ", " << y;
     }
 }
 

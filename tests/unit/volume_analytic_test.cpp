@@ -332,7 +332,8 @@ double spline_at(const std::vector<float>& coefficients, const glm::ivec3& dims,
         for (std::size_t j = 0; j < 4; ++j)
             for (std::size_t i = 0; i < 4; ++i) {
                 const int at = (z.places[k] * dims.y + y.places[j]) * dims.x + x.places[i];
-                sum += x.weights[i] * y.weights[j] * z.weights[k] *
+                const double wx = x.weights[i], wy = y.weights[j], wz = z.weights[k];
+                sum += (wx * wy * wz + x.beyond[i] * wy * wz + wx * y.beyond[j] * wz + wx * wy * z.beyond[k]) *
                        static_cast<double>(coefficients[static_cast<std::size_t>(at)]);
             }
     return sum;
@@ -367,13 +368,14 @@ TEST(Filters, SplineExtrapolatesLinearly) {
     for (const glm::dvec3 p : {glm::dvec3(-0.5, 2.3, 1.5), {5.5, 4.5, -0.5}, {0, 0.2, 0}, {4.9, 4, 1}, {2.5, -2, 3}})
         EXPECT_NEAR(spline_at(c, dims, p), plane(p), 1e-6);
     // Slopes are the derivatives of the weights, at borders and inside.
+    const auto weight = [&](double place, std::size_t k) {
+        const SplineTaps taps = spline_taps(place, dims.x);
+        return taps.weights[k] + taps.beyond[k];
+    };
     for (const double place : {-0.4, 0.3, 1.7, 4.2, 5.3})
         for (std::size_t k = 0; k < 4; ++k) {
-            const double h = 1e-5;
-            const auto taps = spline_taps(place, dims.x);
-            const double slope =
-                (spline_taps(place + h, dims.x).weights[k] - spline_taps(place - h, dims.x).weights[k]) / (2 * h);
-            EXPECT_NEAR(taps.slopes[k], slope, 1e-8) << place;
+            const double h = 1e-5, slope = (weight(place + h, k) - weight(place - h, k)) / (2 * h);
+            EXPECT_NEAR(spline_taps(place, dims.x).slopes[k], slope, 1e-8) << place;
         }
 }
 
