@@ -28,8 +28,6 @@ add_library(edgesplat_formats INTERFACE)
 
 # Compressed pixels of DICOM files.
 find_package(GDCM REQUIRED)
-target_include_directories(edgesplat_formats SYSTEM INTERFACE ${GDCM_INCLUDE_DIRS})
-target_link_libraries(edgesplat_formats INTERFACE gdcmMSFF gdcmDSED gdcmCommon)
 
 # Packed volumes and HDF5 files.
 find_package(HDF5 REQUIRED COMPONENTS C)

@@ -1,5 +1,5 @@
-// Interface to libtiff, blosc, zstd and lz4, which are in a separate module: they depend on ten shared libraries, which
-// every start of a program would load. The module is loaded when a file needs it.
+// Interface to libtiff, GDCM, blosc, zstd and lz4, which are in a separate module: they depend on 22 shared libraries,
+// which every start of a program would load. The module is loaded when a file needs it.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,14 @@ class TiffDecoder {
                                std::size_t bytes) = 0;
 };
 
+/// How the pixels of a DICOM frame are stored.
+struct DicomPixelFormat {
+    std::size_t columns = 0, rows = 0, samples = 1;
+    int bits_allocated = 16, bits_stored = 16, high_bit = 15;
+    bool is_signed = false, planar = false;
+    std::string photometric;
+};
+
 enum class Codec { Blosc, Zstd, Lz4 };
 
 class CodecLibrary {
@@ -34,6 +42,10 @@ class CodecLibrary {
     virtual ~CodecLibrary() = default;
     /// Null if the file cannot be opened; `reason` then holds the cause.
     virtual std::unique_ptr<TiffDecoder> open_tiff(const std::string& path, std::string& reason) const = 0;
+    /// Decodes the fragment `coded` of a frame in a transfer syntax; `format` becomes that of `out`, little-endian.
+    /// Returns the reason of a failure, or "".
+    virtual std::string decode_dicom(const std::string& transfer_syntax, std::string_view coded,
+                                     DicomPixelFormat& format, std::string& out) const = 0;
     /// Unpacks exactly `bytes` bytes. Returns the reason of a failure, or "".
     virtual std::string unpack(Codec codec, std::string_view packed, void* target, std::size_t bytes) const = 0;
 };

@@ -1,5 +1,8 @@
-// The module of libtiff, blosc, zstd and lz4 (engine/files/codec_library_internal.h).
+// The module of libtiff, GDCM, blosc, zstd and lz4 (engine/files/codec_library_internal.h).
 #include <blosc.h>
+#include <gdcmFragment.h>
+#include <gdcmImage.h>
+#include <gdcmSequenceOfFragments.h>
 #include <lz4.h>
 #include <tiffio.h>
 #include <zstd.h>
@@ -109,8 +112,49 @@ std::string unpack_lz4(std::string_view packed, void* target, std::size_t bytes)
     return {};
 }
 
+/// GDCM decodes from the fragment alone: it sees no header.
+std::string decode_dicom_frame(const std::string& transfer_syntax, std::string_view coded, DicomPixelFormat& format,
+                               std::string& out) {
+    gdcm::Image image;
+    image.SetNumberOfDimensions(2);
+    image.SetDimension(0, static_cast<unsigned>(format.columns));
+    image.SetDimension(1, static_cast<unsigned>(format.rows));
+    image.SetTransferSyntax(gdcm::TransferSyntax::GetTSType(transfer_syntax.c_str()));
+    image.SetPixelFormat(gdcm::PixelFormat(static_cast<unsigned short>(format.samples),
+                                           static_cast<unsigned short>(format.bits_allocated),
+                                           static_cast<unsigned short>(format.bits_stored),
+                                           static_cast<unsigned short>(format.high_bit), format.is_signed ? 1 : 0));
+    image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::GetPIType(format.photometric.c_str()));
+    image.SetPlanarConfiguration(format.planar ? 1 : 0);
+    auto sequence = gdcm::SequenceOfFragments::New();
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(coded.data(), static_cast<std::uint32_t>(coded.size()));
+    sequence->AddFragment(fragment);
+    gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
+    pixels.SetVR(gdcm::VR::OB);
+    pixels.SetValue(*sequence);
+    image.SetDataElement(pixels);
+    out.resize(image.GetBufferLength());
+    if (!image.GetBuffer(out.data())) return "GDCM cannot decode them";
+    const gdcm::PixelFormat& decoded = image.GetPixelFormat();
+    format.bits_allocated = decoded.GetBitsAllocated();
+    format.bits_stored = decoded.GetBitsStored();
+    format.high_bit = decoded.GetHighBit();
+    format.planar = image.GetPlanarConfiguration() == 1;
+    format.photometric = image.GetPhotometricInterpretation().GetString();
+    return "";
+}
+
 class Library : public CodecLibrary {
   public:
+    std::string decode_dicom(const std::string& transfer_syntax, std::string_view coded, DicomPixelFormat& format,
+                             std::string& out) const override {
+        try {
+            return decode_dicom_frame(transfer_syntax, coded, format, out);
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+    }
     std::unique_ptr<TiffDecoder> open_tiff(const std::string& path, std::string& reason) const override {
         auto decoder = std::make_unique<Decoder>(path);
         if (decoder->is_open()) return decoder;

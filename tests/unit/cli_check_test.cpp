@@ -1,4 +1,5 @@
 // `edgesplat check`, and what `edgesplat info` says of place and samples.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -117,6 +118,27 @@ TEST_F(CliCheck, ValuesUpTo1e60AreWrittenInTheFilesUnit) {
     EXPECT_NEAR(measured["surfaces"][0]["iso_value"].get<double>() / 5e59, 1, 1e-6);
     EXPECT_THAT(run("render large.raw " + raw + "--iso 5e61 -o no.png").err, HasSubstr("lie between"));
     EXPECT_EQ(run("rerun large.png --check").status, 0);
+}
+
+TEST_F(CliCheck, LoadsLibrariesOnlyForFilesThatNeedThem) {
+#if defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "the sanitizer loads libraries itself";
+#endif
+    write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: raw\n\nabcdefgh");
+    write("a.npy", std::string("\x93NUMPY\x01\x00", 8) + std::string("v\x00", 2) +
+                       fmt::format("{:<117}\n", "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 2, 2), }") +
+                       "abcdefgh");
+    for (const char* file : {"a.nrrd", "a.npy"}) {
+        const ProgramRun info =
+            run_shell(fmt::format("LD_DEBUG=files LD_DEBUG_OUTPUT=loaded '" EDGESPLAT_PROGRAM "' info {}", file));
+        ASSERT_EQ(info.status, 0) << info.err;
+    }
+    std::string loaded;
+    for (const std::string& name : files())
+        if (name.starts_with("loaded")) loaded += text_of(folder_ / name);
+    EXPECT_THAT(loaded, HasSubstr("libc.so"));
+    for (const char* library : {"libtiff", "libgdcm", "libblosc", "libOpenImageIO", "libITK", "libvtk", "edgesplat_"})
+        EXPECT_THAT(loaded, Not(HasSubstr(library)));
 }
 
 }  // namespace

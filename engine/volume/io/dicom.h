@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/files/codec_library_internal.h"
 #include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
@@ -88,11 +89,9 @@ bool is_dicom_segmentation(const DicomItem& data);
 std::vector<std::string> files_of_dicom_directory(const std::string& path, std::vector<std::string>& warnings);
 
 /// How pixels are stored.
-struct DicomLayout {
-    std::size_t columns = 0, rows = 0, samples = 1, frames = 1;
-    int bits_allocated = 16, bits_stored = 16, high_bit = 15;
-    bool is_signed = false, is_float = false, planar = false;
-    std::string photometric;
+struct DicomLayout : DicomPixelFormat {
+    std::size_t frames = 1;
+    bool is_float = false;
 
     std::size_t bits_per_frame() const { return columns * rows * samples * static_cast<std::size_t>(bits_allocated); }
     std::string stored_type() const;

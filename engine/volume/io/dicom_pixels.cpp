@@ -1,9 +1,5 @@
 // Stored samples of a DICOM file. Native and run-length coded pixels are unpacked here; GDCM decodes the other
 // compressed transfer syntaxes, frame by frame, from the fragments alone: it sees no header.
-#include <gdcmFragment.h>
-#include <gdcmImage.h>
-#include <gdcmSequenceOfFragments.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -179,44 +175,10 @@ std::string gdcm_decoded(const std::string& path, const std::string& syntax, std
     std::string out, reason;
     {
         OutputCapture capture;
-        try {
-            gdcm::Image image;
-            image.SetNumberOfDimensions(2);
-            image.SetDimension(0, static_cast<unsigned>(layout.columns));
-            image.SetDimension(1, static_cast<unsigned>(layout.rows));
-            image.SetTransferSyntax(gdcm::TransferSyntax::GetTSType(syntax.c_str()));
-            image.SetPixelFormat(gdcm::PixelFormat(
-                static_cast<unsigned short>(layout.samples), static_cast<unsigned short>(layout.bits_allocated),
-                static_cast<unsigned short>(layout.bits_stored), static_cast<unsigned short>(layout.high_bit),
-                layout.is_signed ? 1 : 0));
-            image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::GetPIType(layout.photometric.c_str()));
-            image.SetPlanarConfiguration(layout.planar ? 1 : 0);
-            auto sequence = gdcm::SequenceOfFragments::New();
-            gdcm::Fragment fragment;
-            fragment.SetByteValue(coded.data(), static_cast<std::uint32_t>(coded.size()));
-            sequence->AddFragment(fragment);
-            gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
-            pixels.SetVR(gdcm::VR::OB);
-            pixels.SetValue(*sequence);
-            image.SetDataElement(pixels);
-            const std::size_t wanted = image.GetBufferLength();
-            out.resize(wanted);
-            if (!image.GetBuffer(out.data())) {
-                reason = "GDCM cannot decode them";
-            } else {
-                const gdcm::PixelFormat& format = image.GetPixelFormat();
-                layout.bits_allocated = format.GetBitsAllocated();
-                layout.bits_stored = format.GetBitsStored();
-                layout.high_bit = format.GetHighBit();
-                layout.planar = image.GetPlanarConfiguration() == 1;
-                layout.photometric = image.GetPhotometricInterpretation().GetString();
-                layout.photometric = trimmed(layout.photometric);
-                if (layout.bits_per_frame() / 8 != out.size())
-                    reason = fmt::format("{} bytes where {} were expected", out.size(), layout.bits_per_frame() / 8);
-            }
-        } catch (const std::exception& error) {
-            reason = error.what();
-        }
+        reason = codec_library().decode_dicom(syntax, coded, layout, out);
+        layout.photometric = trimmed(layout.photometric);
+        if (reason.empty() && layout.bits_per_frame() / 8 != out.size())
+            reason = fmt::format("{} bytes where {} were expected", out.size(), layout.bits_per_frame() / 8);
         if (!reason.empty()) reason += " " + capture.text();
     }
     if (!reason.empty()) fail("{}: cannot decode its pixels: {}", path, tidy(reason));
