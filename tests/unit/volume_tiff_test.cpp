@@ -116,6 +116,32 @@ TEST_F(Tiff, ReadsEveryCodec) {
     }
 }
 
+TEST_F(Tiff, ValuesBeyondFloatsAreScaledOrNoData) {
+    const auto write_doubles = [&](const std::string& path, const std::vector<double>& values) {
+        TIFF* tiff = TIFFOpen(path.c_str(), "w");
+        ASSERT_NE(tiff, nullptr);
+        for (int page = 0; page < 2; ++page) {
+            TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<int>(values.size()));
+            TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 64);
+            TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+            std::vector<double> row = values;
+            ASSERT_EQ(TIFFWriteScanline(tiff, row.data(), 0, 0), 1);
+            ASSERT_EQ(TIFFWriteDirectory(tiff), 1);
+        }
+        TIFFClose(tiff);
+    };
+    write_doubles(file("large.tif"), {0, 1e50, 2e50, 3e50});
+    const edgesplat::Volume large = load_volume(file("large.tif"));
+    EXPECT_EQ(large.non_finite_count, 0U);
+    EXPECT_NEAR(large.in_file_unit(static_cast<double>(large.max_value)) / 3e50, 1, 1e-6);
+    write_doubles(file("fill.tif"), {0, 1, 2, 1e200});
+    const edgesplat::Volume fill = load_volume(file("fill.tif"));
+    EXPECT_EQ(fill.non_finite_count, 2U);
+    EXPECT_THAT(fill.warnings, testing::Contains(HasSubstr("2 samples are above 1e+100 in magnitude")));
+}
+
 TEST_F(Tiff, NamesDamagedPages) {
     write_tiff(file("a.tif"), {.compression = COMPRESSION_ADOBE_DEFLATE});
     std::string bytes = content_of(file("a.tif"));

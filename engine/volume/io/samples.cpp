@@ -159,6 +159,11 @@ void convert_stored(const StoredSamples& stored, std::size_t count, float* targe
     });
 }
 
+bool needs_all(const StoredSamples& stored) {
+    const bool large = size_of(stored.type) >= 4 && stored.type != SampleType::Float32;
+    return large || stored.slope != 1 || stored.intercept != 0;
+}
+
 void take_samples(const StoredSamples& stored, Volume& volume) {
     const std::size_t count = volume.geometry.voxel_count();
     volume.values.resize(count);

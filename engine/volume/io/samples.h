@@ -27,6 +27,9 @@ struct StoredSamples {
 /// Converts `stored` to `count` floats. Samples that equal the fill value become NaN.
 void convert_stored(const StoredSamples& stored, std::size_t count, float* target);
 
+/// Whether take_samples must see all samples at once: integers that may be labels, and values that floats may not hold.
+bool needs_all(const StoredSamples& stored);
+
 /// Fills `volume.values`, of the volume's dims, which must be set. Integers whose magnitude exceeds 2^24 and which are
 /// not scaled keep their identity if they have at most kMaxRankedLabels distinct values: `volume.labels` is set and
 /// the samples become ranks. Otherwise they are rounded to float, which a note says. Values that floats cannot hold are

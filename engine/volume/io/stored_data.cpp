@@ -413,8 +413,6 @@ void read_stored(const StoredData& data, const StoredSelection& selection, Volum
     const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
     const std::size_t voxels = volume.geometry.voxel_count(), item = size_of(data.type), step = selection.step[0];
     const bool even = selection.step[1] == step * nx && selection.step[2] == step * nx * ny;
-    // Integers that may be labels, and values that floats may not hold, are looked at as a whole.
-    const bool as_a_whole = (item >= 4 && data.type != SampleType::Float32) || data.slope != 1 || data.intercept != 0;
     const std::size_t begin = even ? selection.first - selection.first % step : 0;
     const std::size_t count = even ? voxels * step : data.samples;
     if (volume.stored_type.empty()) volume.stored_type = name_of(data.type);
@@ -423,6 +421,7 @@ void read_stored(const StoredData& data, const StoredSelection& selection, Volum
                          .swapped = data.swapped && data.encoding != StoredEncoding::Text,
                          .slope = data.slope,
                          .intercept = data.intercept};
+    const bool as_a_whole = needs_all(stored);
     StoredStream stream(data);
     report(options, 0.05, "reading voxels");
     try {

@@ -898,8 +898,7 @@ void read_stack_samples(Volume& volume, const TiffStack& stack, const TiffPlane&
         stored.slope = coefficients.size() > 1 ? coefficients[1] : 0;
         stored.intercept = coefficients[0] + stored.slope * stack.shift;
     }
-    // Large integers may be labels, which are recognised in all samples at once.
-    const bool is_whole = type != SampleType::Float32 && type != SampleType::Float64 && size_of(type) >= 4;
+    const bool is_whole = needs_all(stored);
     std::vector<unsigned char> samples(is_whole ? slice_bytes * slices : slice_bytes);
     if (!is_whole) volume.values.resize(pixels * slices);
     TiffPixels reader;
