@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/reference/direct_evaluation.h"
 #include "engine/reference/field.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::accuracy {
@@ -27,11 +28,6 @@ std::vector<SurfacePoint> coarser(std::vector<SurfacePoint> points, int factor) 
         p.axis /= factor;
     }
     return points;
-}
-
-double smallest_spacing(const VolumeGeometry& geometry) {
-    const glm::dvec3 s = geometry.spacing();
-    return std::min({s.x, s.y, s.z});
 }
 
 }  // namespace
@@ -217,7 +213,7 @@ class Experiment {
         result.full = edge_figures(full_model, surface.points, range);
 
         renderer_.set_volume(coarse);
-        const double voxel_mm = smallest_spacing(coarse->geometry);
+        const double voxel_mm = shortest_spacing(coarse->geometry);
         for (const auto& [name, settings] : variants_of(request_.settings)) {
             VariantResult variant{.name = name, .settings = settings};
             compare(render_all(settings), full_, voxel_mm, variant);

@@ -9,6 +9,7 @@
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/face.h"
 #include "footprints/paper_warp.h"
@@ -30,14 +31,8 @@ constexpr double kThinSlice = 0.3;
 constexpr int kSliceNodes = 4;
 constexpr double kFarthestPointLight = 1e12;  // mm
 
-/// Shortest voxel spacing, mm.
-double shortest_step(const VolumeGeometry& geometry) {
-    const auto spacing = geometry.spacing();
-    return std::min({spacing.x, spacing.y, spacing.z});
-}
-
 bool is_opaque(double extinction, const VolumeGeometry& geometry) {
-    return extinction * shortest_step(geometry) >= kBuriesPerVoxel;
+    return extinction * shortest_spacing(geometry) >= kBuriesPerVoxel;
 }
 
 /// The extinction for the device, limited to 1e20 per voxel: opaque within a voxel, but sums and means over a
@@ -340,7 +335,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
         if (most > 0) params.visible_mask |= 1U << m;
         if (!is_opaque(least, volume.geometry)) continue;
         params.opaque_mask |= 1U << m;
-        farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry), radius));
+        farthest = std::max(farthest, bury_distance(least * shortest_spacing(volume.geometry), radius));
     }
     // No surface splat is buried.
     plan.buried = settings.cull_buried && !keep_buried && !plan.surfaces && params.opaque_mask != 0 &&

@@ -6,6 +6,7 @@
 #include "engine/reference/faces.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/parallel.h"
 #include "shaders/shared/limits.h"
@@ -13,11 +14,6 @@
 namespace edgesplat::reference {
 
 namespace {
-
-double shortest_step(const VolumeGeometry& geometry) {
-    const glm::dvec3 spacing = geometry.spacing();
-    return std::min({spacing.x, spacing.y, spacing.z});
-}
 
 /// 1 if every voxel of the cube [-r, r]^3 lies in the volume and is opaque, else 0. Computed one axis at a time.
 std::vector<char> buried_voxels(const Field& field, const std::vector<char>& opaque, int r) {
@@ -44,7 +40,7 @@ std::vector<char> buried_voxels(const Field& field, const std::vector<char>& opa
 
 std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geometry, const Settings& settings) {
     if (!settings.cull_buried) return std::nullopt;
-    const double step = shortest_step(geometry);
+    const double step = shortest_spacing(geometry);
     const double radius = uncut_kernel(settings, scene, geometry).radius;
     BuryRule rule;
     double distance = 0;

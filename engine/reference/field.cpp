@@ -6,6 +6,7 @@
 
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/grid.h"
 
 namespace edgesplat::reference {
 
@@ -39,9 +40,7 @@ double spline(const Field& field, const glm::dvec3& p, int along = -1) {
 }  // namespace
 
 std::size_t Field::offset(const glm::ivec3& i) const {
-    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
-               static_cast<std::size_t>(dims.x) +
-           static_cast<std::size_t>(i.x);
+    return voxel_offset(dims, i);
 }
 
 glm::ivec3 Field::voxel(std::size_t at) const {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/volume/filters.h"
+#include "engine/volume/grid.h"
 #include "footprints/face.h"
 #include "shaders/shared/limits.h"
 
@@ -44,11 +45,10 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
 
 std::uint32_t translucent_materials(const Scene& scene, const VolumeGeometry& geometry) {
     constexpr double kPerVoxel = 4;
-    const glm::dvec3 spacing = geometry.spacing();
     std::uint32_t translucent_mask = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const ExtinctionRange range = extinctions_of(scene, m);
-        const bool is_opaque = range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel;
+        const bool is_opaque = range.least * shortest_spacing(geometry) >= kPerVoxel;
         if (range.most > 0 && !is_opaque) translucent_mask |= 1U << m;
     }
     return translucent_mask;
@@ -114,8 +114,7 @@ double solid_chord(const Scene& scene, const VolumeGeometry& geometry) {
     double least = std::numeric_limits<double>::infinity();
     for (const Material& material : scene.materials)
         if (material.extinction > 0) least = std::min(least, material.extinction);
-    const glm::dvec3 spacing = geometry.spacing();
-    return static_cast<double>(shader::SURFACE_SOLID) / (least * std::min({spacing.x, spacing.y, spacing.z}));
+    return static_cast<double>(shader::SURFACE_SOLID) / (least * shortest_spacing(geometry));
 }
 
 bool draws_missing_samples(const Scene& scene, const Volume& volume) {

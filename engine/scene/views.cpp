@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/packed_volume.h"
 #include "engine/volume/parallel.h"
 
@@ -142,8 +143,7 @@ glm::dvec2 ends_in_volume(const glm::dvec3& from, const glm::dvec3& along, const
 std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& direction, const ViewRequest& request) {
     const Volume& volume = *request.volume;
     const VolumeGeometry& geometry = volume.geometry;
-    const glm::dvec3 spacing = geometry.spacing();
-    const double step = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
+    const double step = 0.5 * shortest_spacing(geometry);
     const IndexClip clip = index_clip(request.scene->effects.clip, geometry);
     const glm::ivec3 last = geometry.dims - 1;
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes), to_normal = glm::transpose(to_index);
@@ -302,8 +302,7 @@ Camera named_view(std::string_view name, const ViewRequest& request) {
     Camera camera = framing_camera(view->direction, view->up, request);
     if (name != "close") return camera;
 
-    const glm::dvec3 spacing = request.volume->geometry.spacing();
-    const double voxel = std::min({spacing.x, spacing.y, spacing.z});
+    const double voxel = shortest_spacing(request.volume->geometry);
     const double tan_y = std::tan(glm::radians(request.fov_y) / 2);
     const double near = voxel * request.height / (2 * tan_y * kClosePixelsPerVoxel);
     const glm::dvec3 point = point_to_look_at(camera, request).value_or(request.volume->geometry.center());

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/volume/grid.h"
+
 namespace edgesplat::viewer {
 namespace {
 
@@ -32,8 +34,7 @@ void add_sides(std::vector<Handle>& handles, Handle::Kind kind, const ClipBox& b
 void move_side(ClipBox& box, const VolumeGeometry& geometry, const Handle& handle, double millimetres) {
     const int axis = static_cast<int>(handle.index / 2);
     const ClipBox bounds = volume_box(geometry);
-    const glm::dvec3 spacing = geometry.spacing();
-    const double gap = std::min({spacing.x, spacing.y, spacing.z}) / 2;
+    const double gap = shortest_spacing(geometry) / 2;
     double &low = box.low[axis], &high = box.high[axis];
     const double wanted = handle.place[axis] + handle.normal[axis] * millimetres;
     if (handle.index % 2 == 1)

@@ -3,34 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/volume/grid.h"
+
 namespace edgesplat::viewer {
 namespace {
 
 constexpr int kApron = 2;  // voxels around a brick, so that interpolation in it needs no other brick
 
-std::size_t offset(const glm::ivec3& i, const glm::ivec3& dims) {
-    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
-               static_cast<std::size_t>(dims.x) +
-           static_cast<std::size_t>(i.x);
-}
-
 }  // namespace
 
 double Samples::at(const glm::ivec3& i) const {
     const glm::ivec3 dims = volume_.geometry.dims, c = glm::clamp(i, glm::ivec3(0), dims - 1);
-    if (!volume_.packed) return static_cast<double>(volume_.values[offset(c, dims)]);
+    if (!volume_.packed) return static_cast<double>(volume_.values[voxel_offset(dims, c)]);
     const glm::ivec3 in_box = c - box_low_;
     if (glm::any(glm::lessThan(in_box, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(in_box, box_size_))) {
         constexpr int brick = PackedVolume::kBrick;
         const glm::ivec3 low = glm::max(c / brick * brick - kApron, glm::ivec3(0));
         const glm::ivec3 size = glm::min(c / brick * brick + brick + kApron, dims) - low;
         box_size_ = glm::ivec3(0);  // the box stays empty if reading fails
-        box_.resize(offset(size - 1, size) + 1);
+        box_.resize(voxel_offset(size, size - 1) + 1);
         volume_.packed->read(0, low, size, box_);
         box_low_ = low;
         box_size_ = size;
     }
-    return static_cast<double>(box_[offset(c - box_low_, box_size_)]);
+    return static_cast<double>(box_[voxel_offset(box_size_, c - box_low_)]);
 }
 
 std::array<double, 8> Samples::corners(const glm::ivec3& cell) const {

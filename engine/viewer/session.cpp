@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/scene/ladder.h"
 #include "engine/scene/views.h"
+#include "engine/volume/grid.h"
 
 namespace edgesplat::viewer {
 namespace {
@@ -238,8 +239,7 @@ bool Session::fly_to(const glm::dvec2& pixel, const glm::ivec2& size) {
     if (!found) return false;
     Camera there = motion_.camera();
     const glm::dvec3 towards = glm::normalize(found->world - there.eye);
-    const glm::dvec3 spacing = volume().geometry.spacing();
-    const double voxel = std::min({spacing.x, spacing.y, spacing.z});
+    const double voxel = shortest_spacing(volume().geometry);
     const double near = voxel * size.y / (2 * std::tan(glm::radians(there.fov_y) / 2) * kPixelsPerVoxel);
     // A nearer eye moves half the distance, so that it never enters the wall.
     const double distance = std::min(near, found->distance / 2);

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/viewer/walls_internal.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/packed_volume.h"
 #include "engine/volume/sample_source.h"
 
@@ -73,12 +74,11 @@ struct Walls::Matter {
           values(solid_values(scene, given->geometry.mean_spacing())),
           geometry(volume->geometry),
           field(*(volume = without_missing(volume, values))) {
-        const glm::dvec3 spacing = geometry.spacing();
         const glm::dmat3 rows = glm::transpose(field.to_index);
         for (int axis = 0; axis < 3; ++axis)
             thickness[axis] = 1 / glm::length(rows[axis]);
-        voxel = std::min({spacing.x, spacing.y, spacing.z});
-        diagonal = glm::length(spacing);
+        voxel = shortest_spacing(geometry);
+        diagonal = glm::length(geometry.spacing());
         distances = distances_to_crossings(*volume, values);
         crossed = crossed_cells(*volume, values);
         all = true;
@@ -90,13 +90,7 @@ struct Walls::Matter {
         }
     }
 
-    double at(const glm::ivec3& i) const {
-        return static_cast<double>(
-            distances[(static_cast<std::size_t>(i.z) * static_cast<std::size_t>(geometry.dims.y) +
-                       static_cast<std::size_t>(i.y)) *
-                          static_cast<std::size_t>(geometry.dims.x) +
-                      static_cast<std::size_t>(i.x)]);
-    }
+    double at(const glm::ivec3& i) const { return static_cast<double>(distances[voxel_offset(geometry.dims, i)]); }
 
     glm::dvec3 to_index(const glm::dvec3& world) const { return field.to_index * (world - geometry.origin); }
 

@@ -4,6 +4,7 @@
 
 #include "engine/scene/transfer_function.h"
 #include "engine/viewer/walls_internal.h"
+#include "engine/volume/grid.h"
 
 namespace edgesplat::viewer {
 namespace {
@@ -182,11 +183,7 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
             for (c.x = low.x; c.x <= high.x; ++c.x) {
                 const bool inner =
                     glm::all(glm::greaterThanEqual(c, glm::ivec3(0))) && glm::all(glm::lessThan(c, dims - 1));
-                if (inner && !crossed[(static_cast<std::size_t>(c.z) * static_cast<std::size_t>(dims.y) +
-                                       static_cast<std::size_t>(c.y)) *
-                                          static_cast<std::size_t>(dims.x) +
-                                      static_cast<std::size_t>(c.x)])
-                    continue;
+                if (inner && !crossed[voxel_offset(dims, c)]) continue;
                 const glm::dvec3 gap =
                     glm::max(glm::max(glm::dvec3(c) - index, index - glm::dvec3(c + 1)), glm::dvec3(0)) * thickness;
                 // If the axes are not orthogonal, only the largest gap is a lower bound.

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/lines_internal.h"
 #include "engine/volume/parallel.h"
 
@@ -160,12 +161,6 @@ std::size_t background_label(const Volume& volume, const LabelTable& table) {
 
 namespace {
 
-std::size_t label_offset(const glm::ivec3& dims, const glm::ivec3& i) {
-    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
-               static_cast<std::size_t>(dims.x) +
-           static_cast<std::size_t>(i.x);
-}
-
 /// The mean with weights 1, 2, 1 along each line; the outermost samples are repeated.
 void blur_lines(const detail::Lines& lines) {
     std::vector<float> before(lines.samples, lines.samples + lines.count), here = before;
@@ -194,11 +189,11 @@ void smooth(std::vector<float>& mask, const glm::ivec3& dims) {
 
 /// Whether a voxel is in a cube of 2 x 2 x 2 voxels on its side of the mask.
 bool is_thick(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
-    const bool shown = labels[label_offset(dims, p)] > 0;
+    const bool shown = labels[voxel_offset(dims, p)] > 0;
     const auto in_cube = [&](const glm::ivec3& way) {
         for (int i = 1; i < 8; ++i) {
             const glm::ivec3 there = p + way * glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
-            if ((labels[label_offset(dims, glm::clamp(there, glm::ivec3(0), dims - 1))] > 0) != shown) return false;
+            if ((labels[voxel_offset(dims, glm::clamp(there, glm::ivec3(0), dims - 1))] > 0) != shown) return false;
         }
         return true;
     };
@@ -210,11 +205,11 @@ bool is_thick(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, 
 /// Whether a voxel belongs to a sheet, a strand or a speck: neither it nor a neighbour on its side is thick.
 bool is_thin(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
     if (is_thick(labels, dims, p)) return false;
-    const bool shown = labels[label_offset(dims, p)] > 0;
+    const bool shown = labels[voxel_offset(dims, p)] > 0;
     for (int i = 0; i < 6; ++i) {
         glm::ivec3 beside = p;
         beside[i >> 1] = std::clamp(p[i >> 1] + 2 * (i & 1) - 1, 0, dims[i >> 1] - 1);
-        if ((labels[label_offset(dims, beside)] > 0) == shown && is_thick(labels, dims, beside)) return false;
+        if ((labels[voxel_offset(dims, beside)] > 0) == shown && is_thick(labels, dims, beside)) return false;
     }
     return true;
 }
@@ -226,7 +221,7 @@ void keep_sides(std::vector<float>& mask, const std::vector<std::uint32_t>& labe
             for (int y = 0; y < dims.y; ++y)
                 for (int x = 0; x < dims.x; ++x) {
                     const glm::ivec3 p(x, y, z);
-                    const std::size_t at = label_offset(dims, p);
+                    const std::size_t at = voxel_offset(dims, p);
                     const float way = labels[at] > 0 ? 1.0F : -1.0F, within = way * (mask[at] - 0.5F);
                     if (within >= kThinLabelSide) continue;
                     const float side = is_thin(labels, dims, p) ? kThinLabelSide : kLabelSide;
@@ -299,7 +294,7 @@ std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& label
     std::vector<std::uint32_t> part;
     for (int z = low.z; z < low.z + size.z; ++z)
         for (int y = low.y; y < low.y + size.y; ++y) {
-            const auto row = labels.begin() + static_cast<std::ptrdiff_t>(label_offset(dims, {low.x, y, z}));
+            const auto row = labels.begin() + static_cast<std::ptrdiff_t>(voxel_offset(dims, {low.x, y, z}));
             part.insert(part.end(), row, row + size.x);
         }
     return part;
@@ -313,7 +308,7 @@ std::vector<std::uint32_t> halved_labels(const std::vector<std::uint32_t>& label
             for (int x = 0; x < half.x; ++x) {
                 std::array<std::uint32_t, 8> all{};
                 for (int i = 0; i < 8; ++i)
-                    all[static_cast<std::size_t>(i)] = labels[label_offset(
+                    all[static_cast<std::size_t>(i)] = labels[voxel_offset(
                         dims, glm::min(glm::ivec3(2 * x + (i & 1), 2 * y + (i >> 1 & 1), 2 * z + (i >> 2)), dims - 1))];
                 std::ranges::sort(all);
                 std::uint32_t best = 0;
@@ -330,7 +325,7 @@ std::vector<std::uint32_t> halved_labels(const std::vector<std::uint32_t>& label
 }
 
 std::uint32_t label_near(const ShownLabels& labels, const glm::ivec3& dims, const glm::ivec3& p) {
-    const auto at = [&](const glm::ivec3& i) { return labels.at[label_offset(dims, i)]; };
+    const auto at = [&](const glm::ivec3& i) { return labels.at[voxel_offset(dims, i)]; };
     std::uint32_t label = at(p);
     if (label > 0) return label;
     int nearest = labels.on_scan ? 4 : 13;  // squares of voxels
