@@ -11,6 +11,7 @@
 #include "engine/scene/default_materials.h"
 #include "engine/scene/label_choice.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -62,10 +63,10 @@ void describe_numbers(nlohmann::json& json, const LabelTable& table, const std::
 }  // namespace
 
 void add_labels(nlohmann::json& json, const Volume& volume) {
-    if (volume.packed) return;
     const auto table = edgesplat::labels_of(volume);
     if (!table) return;
     std::vector<std::size_t> count(table->labels.size());
+    if (volume.packed) count = volume.packed->label_voxels();
     const bool of_scan = volume.has_segmentation();
     for (std::size_t at = 0; at < volume.values.size(); ++at) {
         if (of_scan && volume.shown_labels->at[at] > 0) ++count[volume.shown_labels->at[at] - 1];

@@ -325,6 +325,7 @@ std::shared_ptr<const LabelTable> table_of_values(const Volume& volume) {
 }  // namespace
 
 std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip) {
+    if (volume.packed && volume.labels) return measure_labels(load_level(volume, 0), clip);
     require_samples(volume, "measuring labels");
     const glm::ivec3 dims = volume.geometry.dims;
     const double voxel = std::abs(glm::determinant(volume.geometry.index_to_world_axes));

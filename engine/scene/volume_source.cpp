@@ -12,6 +12,7 @@
 #include "engine/volume/label_names.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
+#include "engine/volume/packed_volume.h"
 #include "engine/volume/segmentation.h"
 
 namespace edgesplat {
@@ -177,10 +178,11 @@ void put_numbers(Volume& volume) {
 
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
-    const bool chosen = chooses_labels(source);
-    if (volume.has_segmentation()) {
-        // prepared_volume has chosen among its labels.
-    } else if (source.labels.value_or(chosen)) {
+    const bool chosen = chooses_labels(source), drawn = source.labels.value_or(chosen);
+    volume = small_labels_in_memory(std::move(volume));
+    if (volume.packed && volume.labels && (drawn || has_ranks(*volume.labels))) volume = load_level(volume, 0);
+    // prepared_volume has chosen among the labels of a segmentation.
+    if (drawn && !volume.has_segmentation()) {
         auto table = labels_of(volume);
         if (!table)
             fail("{}: volume.{}: expected a segmentation of 2 to {} whole numbers without transitions", volume.name,
@@ -190,7 +192,7 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
                  kMaxRankedLabels);
         const std::vector<bool> shown = chosen_labels(volume, *table, source.only, source.hide);
         volume = drawn_labels(volume, std::move(table), shown);
-    } else {
+    } else if (!volume.has_segmentation()) {
         put_numbers(volume);
     }
     if (source.threshold) volume = threshold(volume, *source.threshold / volume.value_scale);
@@ -256,7 +258,9 @@ void choose_labels(SceneDocument& document, const Volume& volume) {
                  source.only.empty() ? "hide" : "only");
         source.labels = true;
     }
-    if (source.labels || source.box_filter || volume.packed || is_builtin(volume.name)) return;
+    // Labels are drawn from memory.
+    const bool too_large = volume.packed && volume.geometry.voxel_count() > kMaxVoxels;
+    if (source.labels || source.box_filter || too_large || is_builtin(volume.name)) return;
     const auto table = labels_of(volume);
     if (!table) return;
     const bool named = std::ranges::any_of(table->labels, [](const Label& label) { return !label.name.empty(); });

@@ -5,6 +5,7 @@
 
 #include "engine/scene/scene_file.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::viewer {
 
@@ -20,8 +21,8 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
     }
     for (std::string* file : {&out.document.volume.label_names, &out.document.volume.segmentation})
         if (!file->empty()) *file = std::filesystem::absolute(find_file(*file, out.folders)).string();
-    Volume volume = read_source(out.document.volume, out.folders, progress);
-    if (labels_of(volume)) out.samples = std::make_shared<const Volume>(volume);
+    Volume volume = small_labels_in_memory(read_source(out.document.volume, out.folders, progress));
+    if (labels_of(volume) && !volume.packed) out.samples = std::make_shared<const Volume>(volume);
     out.volume = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));
     return out;
 }

@@ -14,11 +14,8 @@ namespace edgesplat::detail {
 class VolumeChecksum {
   public:
     explicit VolumeChecksum(const VolumeGeometry& geometry);
-    /// Adds the next samples, x fastest.
-    void add(std::span<const float> samples) {
-        for (const float value : samples)
-            add(std::bit_cast<std::uint32_t>(value));
-    }
+    /// Adds the next samples, x fastest; of ranks in `ranks`, the numbers.
+    void add(std::span<const float> samples, const LabelTable* ranks);
     /// Adds the position of a sample without data.
     void add_missing(std::size_t sample) {
         add(static_cast<std::uint32_t>(sample));

@@ -6,16 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/io/samples.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/load_volume.h"
 #include "engine/volume/parallel.h"
 
 namespace edgesplat::detail {
 namespace {
+
+constexpr float kLargestExact = 16777216;  // floats represent all whole numbers up to it
 
 class AnalyticSource final : public PackSource {
   public:
@@ -64,6 +68,10 @@ class MemorySource final : public PackSource {
         description.min_value = volume_->min_value;
         description.max_value = volume_->max_value;
         description.value_scale = volume_->value_scale;
+        description.labels = volume_->labels;
+        description.warnings = volume_->warnings;
+        description.geometry_source = volume_->geometry_source;
+        description.length_unit = volume_->length_unit;
     }
     Volume owned_;
     const Volume* volume_;
@@ -124,6 +132,25 @@ bool is_nrrd(const std::string& path) {
     return std::string_view(magic.data(), magic.size()) == "NRRD0";
 }
 
+/// Whether one of three slices looks like labels, which are recognised in memory, or has numbers that floats cannot
+/// represent.
+bool may_be_labels(const PackSource& source) {
+    const VolumeGeometry& geometry = source.description.geometry;
+    if (geometry.voxel_count() > kMaxVoxels) return false;
+    Volume slice;
+    slice.geometry.dims = {geometry.dims.x, geometry.dims.y, 1};
+    slice.values.resize(slice.geometry.voxel_count());
+    for (int quarter = 1; quarter < 4; ++quarter) {
+        source.read({0, 0, quarter * (geometry.dims.z - 1) / 4}, slice.geometry.dims, slice.values);
+        const bool whole = std::ranges::all_of(slice.values, [](float v) { return v == std::floor(v); });
+        const auto [low, high] = std::ranges::minmax(slice.values);
+        slice.min_value = low;
+        slice.max_value = high;
+        if (whole && (std::max(-low, high) > kLargestExact || labels_of(slice))) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description) {
@@ -156,13 +183,12 @@ std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptio
         // Values that no header declares are looked for in the samples.
         if (layout && !options.no_data) {
             apply_spacing(description, options);
-            return file_source(*layout, description);
+            auto source = file_source(*layout, description);
+            if (!may_be_labels(*source)) return source;
         }
     }
     Volume volume = load_volume(path, options);
     if (volume.packed) fail("{}: is a packed volume already", path);
-    if (volume.labels && has_ranks(*volume.labels))
-        fail("{}: has labels with numbers above 2^24, which a packed volume cannot store", path);
     return std::make_unique<MemorySource>(std::move(volume));
 }
 

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "engine/volume/checksum_internal.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/pack_source_internal.h"
 #include "engine/volume/packed_internal.h"
 #include "footprints/temporary_file.h"
@@ -50,6 +51,7 @@ struct Scan {
     std::size_t bad = 0;
     double sum = 0, error = 0;
     std::uint64_t checksum = 0;
+    std::vector<std::uint64_t> label_voxels;  ///< samples with data of each label
 };
 
 class Progress {
@@ -75,7 +77,10 @@ Scan scan(const PackSource& source, const Coding* coding, Progress& progress) {
     const int rows = std::clamp(static_cast<int>(kScanned / static_cast<std::size_t>(dims.x)), 1, dims.y);
     std::vector<float> values;
     VolumeChecksum checksum(geometry);
+    const LabelTable* const labels = source.description.labels.get();
+    const bool ranks = labels != nullptr && has_ranks(*labels);
     Scan result;
+    if (labels != nullptr) result.label_voxels.resize(labels->labels.size());
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; y += rows) {
             const glm::ivec3 size(dims.x, std::min(rows, dims.y - y), 1);
@@ -92,12 +97,14 @@ Scan scan(const PackSource& source, const Coding* coding, Progress& progress) {
                     ++result.bad;
                     continue;
                 }
+                if (labels != nullptr && coding == nullptr)
+                    ++result.label_voxels[checked_place(*labels, value, source.description.name)];
                 result.low = std::min(result.low, value);
                 result.high = std::max(result.high, value);
                 result.integers &= value == std::floor(value) && !(value == 0 && std::signbit(value));
                 result.sum += static_cast<double>(value);
             }
-            checksum.add(values);
+            checksum.add(values, ranks ? labels : nullptr);
             progress.add(values.size(), "scanning all samples");
         }
     result.checksum = checksum.value();
@@ -253,7 +260,8 @@ void write_coarser(LevelWriter& writer, const Hdf5Dataset& finer, const glm::ive
     });
 }
 
-void write_attributes(Hdf5File& file, const Volume& volume, const Scan& scan, const Coding& coding) {
+void write_description(Hdf5File& file, const Volume& volume, const Scan& scan, const Coding& coding,
+                       const std::vector<std::uint64_t>& label_voxels) {
     const VolumeGeometry& geometry = volume.geometry;
     const glm::dvec3 dims(geometry.dims);
     file.set_text("format", kPackedFormat);
@@ -273,6 +281,12 @@ void write_attributes(Hdf5File& file, const Volume& volume, const Scan& scan, co
     file.set_whole_number("checksum", scan.checksum);
     file.set_text("source", volume.name);
     file.set_text("notes", fmt::format("{}", fmt::join(volume.notes, "\n")));
+    file.set_text("warnings", fmt::format("{}", fmt::join(volume.warnings, "\n")));
+    file.set_text("geometry_source", volume.geometry_source);
+    file.set_text("length_unit", volume.length_unit);
+    file.set_whole_number("labels", volume.labels ? volume.labels->labels.size() : 0);
+    file.set_number("labels_signed", SampleType::UInt8, volume.labels && volume.labels->is_signed ? 1 : 0);
+    if (volume.labels) write_labels(file, *volume.labels, label_voxels);
     file.set_number("slope", SampleType::Float64, coding.slope);
     file.set_number("intercept", SampleType::Float64, coding.intercept);
     file.set_number("quantisation_error", SampleType::Float64, scan.error);
@@ -331,7 +345,12 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
     // Fails before the long scan if there is no space even for one byte per sample.
     if (!options.compress) check_space(output, levels, {.type = SampleType::UInt8});
     Scan found = scan(source, nullptr, progress);
+    const std::vector<std::uint64_t> label_voxels = std::move(found.label_voxels);
     const Coding coding = coding_for(found, options.quantise);
+    if (volume.labels && coding.quantised()) {
+        volume.labels.reset();
+        volume.warnings.push_back("Its labels were left out when it was packed: quantised numbers are no labels.");
+    }
     if (!options.compress) check_space(output, levels, coding);
     volume.non_finite_count = found.bad;
     if (coding.quantised() || found.bad > 0) {
@@ -368,7 +387,7 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
                 writer->finish();
                 finer.emplace(std::move(*writer));
             }
-            write_attributes(file, volume, found, coding);
+            write_description(file, volume, found, coding, label_voxels);
         } catch (...) {
             file.abandon();
             throw;

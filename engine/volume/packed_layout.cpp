@@ -31,6 +31,12 @@ std::vector<VolumeGeometry> level_geometries(const VolumeGeometry& finest) {
     return levels;
 }
 
+void check_extent(const std::string& path, const std::string& name, const Hdf5Extent& found, const Hdf5Extent& wanted) {
+    if (found != wanted)
+        fail("{}: {}: {} (slowest axis first), expected {}", path, name, fmt::join(found, " x "),
+             fmt::join(wanted, " x "));
+}
+
 std::size_t bin_of(float value, double low, double scale, std::size_t bins) {
     const auto bin = static_cast<std::size_t>(std::max(0.0, (static_cast<double>(value) - low) * scale));
     return std::min(bin, bins - 1);

@@ -27,6 +27,7 @@ struct PackedVolume::State {
     std::string path, sample_type, source;
     double slope = 1, intercept = 0, mean = 0, quantisation_error = 0;
     Histogram histogram;
+    std::vector<std::uint64_t> label_voxels;
 };
 
 namespace {
@@ -34,15 +35,6 @@ namespace {
 /// Chunk cache per level. A box slightly larger than a brick touches 27 bricks, and the next box touches most of them
 /// again.
 constexpr std::size_t kCache = std::size_t{1} << 26;
-
-std::string shown(const Hdf5Extent& extent) {
-    return fmt::format("{}", fmt::join(extent, " x "));
-}
-
-void check_extent(const std::string& path, const std::string& name, const Hdf5Extent& found, const Hdf5Extent& wanted) {
-    if (found != wanted)
-        fail("{}: {}: {} (slowest axis first), expected {} for these dims", path, name, shown(found), shown(wanted));
-}
 
 double finite(const Hdf5File& file, const std::string& path, const std::string& name) {
     const double value = file.number(name);
@@ -54,9 +46,17 @@ void check_format(const Hdf5File& file, const std::string& path) {
     const std::string format = file.text("format");
     if (format != kPackedFormat) fail("{}: attribute format: '{}', expected '{}'", path, format, kPackedFormat);
     const auto version = file.whole_number("version");
-    if (version != kPackedVersion)
-        fail("{}: attribute version: {}, expected {}: it was packed by another version of this program", path, version,
-             kPackedVersion);
+    if (version < 1 || version > kPackedVersion)
+        fail("{}: attribute version: {}, expected 1 to {}: it was packed by another version of this program", path,
+             version, kPackedVersion);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);)
+        lines.push_back(line);
+    return lines;
 }
 
 VolumeGeometry read_geometry(const Hdf5File& file, const std::string& path) {
@@ -92,9 +92,11 @@ Volume read_description(const Hdf5File& file, const std::string& path) {
     volume.non_finite_count = file.whole_number("non_finite_count");
     volume.stored_type = file.text("stored_type");
     volume.checksum = file.whole_number("checksum");
-    std::istringstream notes(file.text("notes"));
-    for (std::string line; std::getline(notes, line);)
-        volume.notes.push_back(line);
+    volume.notes = lines_of(file.text("notes"));
+    if (file.whole_number("version") == 1) return volume;
+    volume.warnings = lines_of(file.text("warnings"));
+    volume.geometry_source = file.text("geometry_source");
+    volume.length_unit = file.text("length_unit");
     return volume;
 }
 
@@ -166,6 +168,13 @@ std::shared_ptr<const PackedVolume> PackedVolume::open(const std::string& path) 
     state->mean = finite(file, path, "mean");
     state->quantisation_error = finite(file, path, "quantisation_error");
     state->histogram = read_histogram(file, path, state->description);
+    if (file.whole_number("version") > 1) {
+        const std::uint64_t voxels = state->description.geometry.voxel_count();
+        auto [table, counts] = read_labels(file, path, file.whole_number("labels"),
+                                           voxels - std::min(voxels, state->description.non_finite_count));
+        state->description.labels = std::move(table);
+        state->label_voxels = std::move(counts);
+    }
     for (const VolumeGeometry& geometry : level_geometries(state->description.geometry)) {
         const int level = static_cast<int>(state->levels.size());
         const std::string name = level_path(level, "samples");
@@ -206,6 +215,9 @@ double PackedVolume::quantisation_error() const {
 const Histogram& PackedVolume::histogram() const {
     return state_->histogram;
 }
+const std::vector<std::uint64_t>& PackedVolume::label_voxels() const {
+    return state_->label_voxels;
+}
 const Volume& PackedVolume::description() const {
     return state_->description;
 }
@@ -232,7 +244,7 @@ void PackedVolume::read(int level, const glm::ivec3& low, const glm::ivec3& size
     check_box(*this, level, low, size);
     const auto extent = extent_of(size);
     if (out.size() != extent[0] * extent[1] * extent[2])
-        fail("{}: buffer for {} samples, box of {}", state_->path, out.size(), shown(extent));
+        fail("{}: buffer for {} samples, box of {}", state_->path, out.size(), fmt::join(extent, " x "));
     state_->levels[static_cast<std::size_t>(level)].samples.read(extent_of(low), extent, SampleType::Float32,
                                                                  out.data());
     if (state_->slope == 1 && state_->intercept == 0) return;
@@ -255,17 +267,35 @@ Volume load_level(const Volume& volume, int level) {
     const glm::ivec3& dims = result.geometry.dims;
     const std::size_t voxels = result.geometry.voxel_count();
     if (voxels > kMaxVoxels)
-        fail("{}: level {}: {} x {} x {} voxels are too many for memory", volume.name, level, dims.x, dims.y, dims.z);
+        fail(
+            "{}: level {}: {} x {} x {} voxels are too many for memory, expected at most 2^31; --iso draws "
+            "the numbers of labels from the file",
+            volume.name, level, dims.x, dims.y, dims.z);
     check_memory(volume.name, fmt::format("level {} with {} x {} x {} voxels", level, dims.x, dims.y, dims.z),
                  voxels * sizeof(float));
     result.in_patient = volume.in_patient;
     result.name = volume.name;
     result.stored_type = volume.stored_type;
     result.notes = volume.notes;
+    result.warnings = volume.warnings;
+    result.geometry_source = volume.geometry_source;
+    result.length_unit = volume.length_unit;
+    result.format = volume.format;
     result.values.resize(voxels);
     packed.read(level, glm::ivec3(0), dims, result.values);
+    // Means of labels are no labels.
+    if (level == 0 && volume.labels) {
+        for (const float sample : result.values)
+            (void)checked_place(*volume.labels, sample, volume.name);
+        result.labels = volume.labels;
+    }
     finish_volume(result);
     return result;
+}
+
+Volume small_labels_in_memory(Volume volume) {
+    const bool small = volume.geometry.voxel_count() <= kMaxVoxelsAnalysed;
+    return volume.packed && volume.labels && small ? load_level(volume, 0) : volume;
 }
 
 int finest_level_within(const PackedVolume& packed, std::size_t voxels) {

@@ -57,6 +57,8 @@ class PackedVolume {
     double quantisation_error() const;
     /// Counts of all level-0 samples in the file's bins.
     const Histogram& histogram() const;
+    /// Number of level-0 samples with data of each of the description's labels, if it has any.
+    const std::vector<std::uint64_t>& label_voxels() const;
     /// The volume's description, without `packed`.
     const Volume& description() const;
 
@@ -69,9 +71,13 @@ class PackedVolume {
 /// Opens the file as a volume without samples in memory: `packed` is set; everything else is as in the original.
 Volume open_packed(const std::string& path);
 
-/// Loads a whole level into memory: an ordinary, finished volume with the level's geometry. Throws Error if the level
-/// does not exist or has more than `kMaxVoxels`.
+/// Loads a whole level into memory: an ordinary, finished volume with the level's geometry; level 0 with its labels.
+/// Throws Error if the level does not exist or has more than `kMaxVoxels`, or if a sample is none of the labels.
 Volume load_level(const Volume& packed, int level);
+
+/// The volume with its samples in memory if it is a packed segmentation of at most `kMaxVoxelsAnalysed` voxels; else
+/// the volume.
+Volume small_labels_in_memory(Volume volume);
 
 /// The finest level of at most `voxels` voxels; the coarsest level if there is none.
 int finest_level_within(const PackedVolume& packed, std::size_t voxels);

@@ -66,6 +66,7 @@ void add_segmentation(Volume& scan, const Volume& segmentation) {
     const auto fail_for = [&](const std::string& expected) {
         fail("{}: volume.segmentation (--segmentation): {}", segmentation.name, expected);
     };
+    if (segmentation.packed && segmentation.labels) return add_segmentation(scan, load_level(segmentation, 0));
     if (scan.packed || segmentation.packed) fail_for("expected volumes that are not packed");
     const auto labels = labels_of(segmentation);
     if (!labels)

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/volume/checksum_internal.h"
+#include "engine/volume/labels.h"
 
 namespace edgesplat {
 namespace {
@@ -41,6 +42,20 @@ VolumeChecksum::VolumeChecksum(const VolumeGeometry& geometry) {
             add(geometry.index_to_world_axes[column][row]);
     for (int axis = 0; axis < 3; ++axis)
         add(geometry.origin[axis]);
+}
+
+void VolumeChecksum::add(std::span<const float> samples, const LabelTable* ranks) {
+    for (const float value : samples) {
+        const auto bits = std::bit_cast<std::uint32_t>(value);
+        if (ranks == nullptr || std::isnan(value)) {
+            add(bits);
+            continue;
+        }
+        const std::size_t place = place_of_label(*ranks, value);
+        const std::uint64_t id = place < ranks->labels.size() ? ranks->labels[place].id : bits;
+        add(static_cast<std::uint32_t>(id));
+        add(static_cast<std::uint32_t>(id >> 32));
+    }
 }
 
 void check_axes(const Volume& volume) {
@@ -131,7 +146,8 @@ void finish_volume(Volume& volume) {
         return value == volume.min_value || value == volume.max_value;
     });
     detail::VolumeChecksum checksum(volume.geometry);
-    checksum.add(volume.values);
+    const bool ranks = volume.labels && !volume.shown_labels && has_ranks(*volume.labels);
+    checksum.add(volume.values, ranks ? volume.labels.get() : nullptr);
     if (volume.value_scale != 1) checksum.add_scale(volume.value_scale);
     // Which samples are missing changes the picture, too.
     for (std::size_t i = 0; bad > 0 && i < volume.values.size(); ++i)

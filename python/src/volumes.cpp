@@ -212,7 +212,7 @@ SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::p
     source.path = find_volume(source.path, folders);
     std::vector<std::filesystem::path> searched{{}};
     searched.insert(searched.end(), folders.begin(), folders.end());
-    Volume volume = read_source(source, searched);
+    Volume volume = small_labels_in_memory(read_source(source, searched));
     // An absolute path stays valid wherever the picture is stored.
     if (!is_builtin(source.path)) source.path = std::filesystem::absolute(source.path).string();
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};

@@ -101,12 +101,21 @@ void make(const std::string& path, Input& in) {
     put_numbers(file, in, "slope", {1});
     put_whole(file, in, "non_finite_count", 0);
     put_whole(file, in, "checksum", 0);
-    for (const char* name : {"stored_type", "notes", "source"})
+    for (const char* name : {"stored_type", "notes", "source", "warnings", "geometry_source", "length_unit"})
         put_text(file, in, name, "uint8");
     put_dataset(file, in, "/histogram", {kPackedBins}, SampleType::UInt64, 12);
     put_dataset(file, in, "/levels/0/samples", {2, 2, 3}, SampleType::UInt8, 0);
     for (const char* name : {"low", "high"})
         put_dataset(file, in, level_path(0, name), {1, 1, 1}, SampleType::Float32, 0);
+    const bool labels = (in.byte() & 1U) != 0;
+    put_whole(file, in, "labels", labels ? 1 : 0);
+    put_whole(file, in, "labels_signed", 0);
+    if (labels) {
+        put_dataset(file, in, "/labels/ids", {1}, SampleType::UInt64, 0);
+        put_dataset(file, in, "/labels/voxels", {1}, SampleType::UInt64, 12);
+        put_dataset(file, in, "/labels/colors", {1, 3}, SampleType::Float64, 0);
+        put_dataset(file, in, "/labels/names", {1}, SampleType::UInt8, 0);
+    }
     file.close();
 }
 

@@ -430,7 +430,10 @@ TEST_F(PackedVolumeTest, RefusesDamagedFilesByName) {
         EXPECT_THAT(text, HasSubstr(path));
         return text;
     };
-    EXPECT_THAT(refusal_after([](hid_t f) { set_number(f, "version", 2); }), HasSubstr("attribute version: 2"));
+    EXPECT_THAT(refusal_after([](hid_t f) { set_number(f, "version", 3); }),
+                HasSubstr("attribute version: 3, expected 1 to 2"));
+    EXPECT_THAT(refusal_after([](hid_t f) { set_number(f, "labels", 3); }), HasSubstr("/labels/ids: missing"));
+    EXPECT_THAT(refusal_after([](hid_t f) { H5Adelete(f, "warnings"); }), HasSubstr("attribute warnings: missing"));
     EXPECT_THAT(refusal_after([](hid_t f) { H5Adelete(f, "origin"); }), HasSubstr("attribute origin: missing"));
     EXPECT_THAT(refusal_after([](hid_t f) { H5Adelete(f, "checksum"); }), HasSubstr("attribute checksum: missing"));
     EXPECT_THAT(refusal_after([](hid_t f) { H5Ldelete(f, "/levels/1/samples", H5P_DEFAULT); }),
@@ -458,6 +461,154 @@ TEST_F(PackedVolumeTest, RefusesDamagedFilesByName) {
                     H5Aclose(attribute);
                 }),
                 HasSubstr("axes lie in one plane"));
+}
+
+/// Boxes of three labels among others of number 0.
+Volume labelled(const std::array<std::uint64_t, 4>& ids, bool is_signed, bool ranks) {
+    auto table = std::make_shared<edgesplat::LabelTable>();
+    table->is_signed = is_signed;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        table->labels.push_back(
+            {ids[i], ranks ? static_cast<float>(i) : static_cast<float>(static_cast<std::int64_t>(ids[i])), {}, {}});
+    table->labels[1].name = "Leber, \xc3\xbc";
+    table->labels[1].color = glm::dvec3(0.25, 0.5, 1);
+    Volume volume;
+    volume.name = "made here";
+    volume.stored_type = "int64";
+    volume.geometry.dims = {70, 9, 8};
+    for (int z = 0; z < 8; ++z)
+        for (int y = 0; y < 9; ++y)
+            for (int x = 0; x < 70; ++x)
+                volume.values.push_back(
+                    table->labels[y < 2 || y > 6 ? 0U : 1 + static_cast<std::size_t>(x / 24)].value);
+    volume.labels = std::move(table);
+    volume.geometry_source = "sform (code 2)";
+    volume.length_unit = "um";
+    volume.warnings = {"Something was left out.", "Something else, too."};
+    finish_volume(volume);
+    return volume;
+}
+
+void expect_same_labels(const Volume& packed, const Volume& volume) {
+    ASSERT_TRUE(packed.labels && volume.labels);
+    EXPECT_EQ(packed.labels->is_signed, volume.labels->is_signed);
+    ASSERT_EQ(packed.labels->labels.size(), volume.labels->labels.size());
+    for (std::size_t i = 0; i < volume.labels->labels.size(); ++i) {
+        const edgesplat::Label &found = packed.labels->labels[i], &wanted = volume.labels->labels[i];
+        EXPECT_EQ(found.id, wanted.id);
+        EXPECT_EQ(found.value, wanted.value);
+        EXPECT_EQ(found.name, wanted.name);
+        EXPECT_EQ(found.color, wanted.color);
+    }
+}
+
+TEST_F(PackedVolumeTest, KeepsLabelsPlaceAndWarnings) {
+    const std::uint64_t below = ~std::uint64_t{0};  // -1
+    for (const Volume& volume :
+         {labelled({0, 7, 300, 70000}, false, false), labelled({0, 997, 312782546, 1ULL << 63}, false, true),
+          labelled({below, 0, 5, 6}, true, false), labelled({below, 0, 1, 1ULL << 40}, true, true)}) {
+        pack_volume(volume, file("vol.esv"));
+        const Volume packed = edgesplat::load_volume(file("vol.esv"));
+        ASSERT_TRUE(packed.packed);
+        expect_same_labels(packed, volume);
+        EXPECT_EQ(packed.geometry_source, volume.geometry_source);
+        EXPECT_EQ(packed.length_unit, volume.length_unit);
+        EXPECT_EQ(packed.warnings, volume.warnings);
+        EXPECT_EQ(packed.checksum, volume.checksum);
+        EXPECT_EQ(packed.packed->label_voxels(), (std::vector<std::uint64_t>{2240, 960, 960, 880}));
+        const Volume loaded = load_level(packed, 0);
+        expect_same_labels(loaded, volume);
+        EXPECT_EQ(loaded.values, volume.values);
+        EXPECT_EQ(loaded.checksum, volume.checksum);
+        EXPECT_EQ(loaded.warnings, volume.warnings);
+        EXPECT_FALSE(load_level(packed, 1).labels);
+    }
+    pack_volume(labelled({0, 7, 300, 70000}, false, false), file("vol.esv"), {.quantise = 8});
+    const Volume quantised = edgesplat::open_packed(file("vol.esv"));
+    EXPECT_FALSE(quantised.labels);
+    EXPECT_THAT(quantised.warnings, testing::Contains(HasSubstr("Its labels were left out")));
+}
+
+TEST_F(PackedVolumeTest, FindsLabelsInFilesThatAreReadPieceByPiece) {
+    std::string voxels, large;
+    for (int i = 0; i < 12 * 12 * 12; ++i) {
+        const int x = i % 12, y = i / 12 % 12, z = i / 144;
+        const bool in = x > 2 && x < 10 && y > 2 && y < 9 && z > 2 && z < 9;
+        const std::int64_t id = !in ? 0 : x < 6 ? 1 : 312782546;
+        voxels += static_cast<char>(!in ? 0 : x < 6 ? 1 : 2);
+        large.append(reinterpret_cast<const char*>(&id), sizeof id);
+    }
+    const auto nrrd = [](const char* type, const std::string& bytes) {
+        return fmt::format(
+            "NRRD0004\ntype: {}\ndimension: 3\nsizes: 12 12 12\nspacings: 1 1 2\nendian: little\nencoding: raw\n\n{}",
+            type, bytes);
+    };
+    for (const std::string& path :
+         {write("small.nrrd", nrrd("uint8", voxels)), write("large.nrrd", nrrd("int64", large))}) {
+        const Volume volume = edgesplat::load_volume(path);
+        edgesplat::pack_file(path, {}, file("vol.esv"));
+        const Volume packed = edgesplat::open_packed(file("vol.esv"));
+        expect_same_labels(packed, volume);
+        EXPECT_EQ(packed.checksum, volume.checksum);
+        EXPECT_EQ(packed.geometry_source, volume.geometry_source);
+        EXPECT_EQ(packed.notes, volume.notes);
+    }
+}
+
+TEST_F(PackedVolumeTest, ReadsVersion1) {
+    const std::string path = file("vol.esv");
+    pack_volume(volume_of({67, 33, 41}, as_uint8), path);
+    damage(path, [](hid_t f) {
+        for (const char* name : {"labels", "labels_signed", "geometry_source", "length_unit", "warnings"})
+            H5Adelete(f, name);
+        set_number(f, "version", 1);
+    });
+    const Volume volume = edgesplat::load_volume(path);
+    EXPECT_EQ(volume.notes.size(), 2U);
+    EXPECT_TRUE(volume.geometry_source.empty());
+    EXPECT_FALSE(volume.labels);
+}
+
+TEST_F(PackedVolumeTest, RefusesContradictoryLabels) {
+    const std::string good = file("good.esv"), path = file("vol.esv");
+    pack_volume(labelled({0, 7, 300, 70000}, false, false), good);
+    const auto refusal_after = [&](const std::function<void(hid_t file)>& change) {
+        std::filesystem::copy_file(good, path, std::filesystem::copy_options::overwrite_existing);
+        damage(path, change);
+        return volume_test::refusal(path);
+    };
+    const auto write_rows = [](const char* name, hid_t type, const auto& rows) {
+        return [=](hid_t f) {
+            const hid_t dataset = H5Dopen2(f, name, H5P_DEFAULT);
+            ASSERT_GE(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()), 0);
+            H5Dclose(dataset);
+        };
+    };
+    using Rows = std::array<std::uint64_t, 4>;
+    EXPECT_THAT(refusal_after([](hid_t f) { set_number(f, "labels", 5); }), HasSubstr("/labels/ids: 4"));
+    EXPECT_THAT(refusal_after([](hid_t f) { set_number(f, "labels", std::uint64_t{1} << 60); }),
+                HasSubstr("attribute labels: 1152921504606846976, expected at most 1048576"));
+    EXPECT_THAT(refusal_after(write_rows("/labels/ids", H5T_NATIVE_UINT64, Rows{0, 300, 7, 70000})),
+                HasSubstr("/labels/ids: 300 before 7, expected ascending numbers"));
+    EXPECT_THAT(refusal_after(write_rows("/labels/voxels", H5T_NATIVE_UINT64, Rows{2240, 960, 960, 881})),
+                HasSubstr("/labels/voxels: more than the 5040 voxels with data"));
+    EXPECT_THAT(refusal_after(write_rows("/labels/voxels", H5T_NATIVE_UINT64, Rows{2240, 960, 960, 0})),
+                HasSubstr("/labels/voxels: 4160 voxels in all, expected 5040"));
+    EXPECT_THAT(refusal_after(write_rows("/labels/colors", H5T_NATIVE_DOUBLE, std::array<double, 12>{0, 0, 2})),
+                HasSubstr("/labels/colors: 2 of label 0, expected 0 to 1"));
+    EXPECT_THAT(refusal_after(write_rows("/labels/names", H5T_NATIVE_UINT8, std::array<unsigned char, 16>{})),
+                HasSubstr("/labels/names: 13 names that end with a zero byte, expected 4"));
+    EXPECT_THAT(refusal_after([](hid_t f) { H5Ldelete(f, "/labels/colors", H5P_DEFAULT); }),
+                HasSubstr("/labels/colors: missing"));
+    // A sample of another number is found when the samples are read.
+    std::filesystem::copy_file(good, path, std::filesystem::copy_options::overwrite_existing);
+    damage(path, write_rows("/labels/ids", H5T_NATIVE_UINT64, Rows{0, 7, 301, 70000}));
+    try {
+        (void)load_level(edgesplat::open_packed(path), 0);
+        ADD_FAILURE() << "was read";
+    } catch (const edgesplat::Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("a sample is 300, which is none of its 4 labels"));
+    }
 }
 
 TEST_F(PackedVolumeTest, RefusesTruncatedAndForeignFiles) {
