@@ -56,7 +56,7 @@ edgesplat_deb(edgesplat-fly edgesplat-fly "fly through volumes with sharp edges"
     "edgesplat (= ${PROJECT_VERSION})")
 edgesplat_deb(dev libedgesplat-dev "volume renderer by splatting, for programs"
     "Static libraries, headers and the CMake package edgesplat::engine."
-    "edgesplat (= ${PROJECT_VERSION}), cmake, libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libgdcm-dev, libgdcm-tools, libhdf5-dev, libnetcdf-dev, libbz2-dev, libarchive-dev, libpugixml-dev, liblz4-dev, liblzma-dev, zlib1g-dev, libtomlplusplus-dev, pkgconf")
+    "edgesplat (= ${PROJECT_VERSION}), cmake, libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libhdf5-dev, libnetcdf-dev, libbz2-dev, libarchive-dev, libpugixml-dev, liblz4-dev, liblzma-dev, zlib1g-dev, libtomlplusplus-dev, pkgconf")
 edgesplat_deb(python-debian python3-edgesplat "volume renderer by splatting, for Python"
     "The module edgesplat: arrays, files and scenes in, pictures as arrays out."
     "python3, python3-numpy, edgesplat (= ${PROJECT_VERSION})")
