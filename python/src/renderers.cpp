@@ -75,12 +75,22 @@ class SharedRenderer {
         });
     }
 
+    /// Within `use`: sets the volume of the following pictures. A volume is immutable, so one that is set already keeps
+    /// its upload and its edges.
+    void show(std::shared_ptr<const Volume> volume) {
+        if (volume == shown_) return;
+        shown_.reset();
+        renderer_->set_volume(volume);
+        shown_ = std::move(volume);
+    }
+
     void interrupt() {
         if (drawing_) stop_ = true;
     }
     void close() {
         without_lock([&] {
             const std::lock_guard lock(mutex_);
+            shown_.reset();
             renderer_.reset();
         });
     }
@@ -109,6 +119,7 @@ class SharedRenderer {
 
     std::timed_mutex mutex_;
     std::unique_ptr<Renderer> renderer_;
+    std::shared_ptr<const Volume> shown_;
     std::function<bool()> interruption_;
     std::atomic<bool> drawing_ = false, stop_ = false;
 };
@@ -129,10 +140,10 @@ void draw_on_processor(Picture& picture, std::function<bool()> interruption) {
             draw_overlays(frame.result.color, *picture.volume.volume, picture.scene, picture.camera);
 }
 
-void draw_on_device(Picture& picture, Renderer& renderer) {
+void draw_on_device(Picture& picture, SharedRenderer& self, Renderer& renderer) {
     const OutputChoice& output = picture.document.output;
     Settings settings = picture.document.quality.settings;
-    renderer.set_volume(picture.volume.volume);
+    self.show(picture.volume.volume);
     picture.choice = apply_max_error(picture.document.quality.max_error, renderer, *picture.volume.volume,
                                      picture.scene, picture.camera, output.size, settings, true);
     if (output.compare_raycast)
@@ -169,7 +180,7 @@ Picture draw(SharedRenderer& self, const Document& document, const SharedVolume&
                 const py::gil_scoped_acquire held;
                 progress(share);
             });
-        draw_on_device(picture, renderer);
+        draw_on_device(picture, self, renderer);
     });
     return picture;
 }
@@ -188,7 +199,7 @@ Movie movie(SharedRenderer& self, const Document& document, const SharedVolume& 
         check_film(scene);
         made.film = film_of(scene, document.folders, volume.volume, seconds);
         const double start = made.film.time_of(0);
-        renderer.set_volume(volume.volume);
+        self.show(volume.volume);
         made.choice = apply_max_error(scene.quality.max_error, renderer, *volume.volume, scene_at(made.film, start),
                                       camera_at(made.film.path, start), scene.output.size, made.film.settings, true);
     });
@@ -204,7 +215,7 @@ Picture frame_of(SharedRenderer& self, const Movie& movie, int frame) {
     picture.choice = movie.choice;
     self.use([&](Renderer& renderer) {
         picture.camera = camera_at(film.path, time);
-        renderer.set_volume(film.volume);
+        self.show(film.volume);
         picture.frames.push_back({film.settings.edges != EdgeEstimator::Off ? "edges" : "plain", film.settings,
                                   draw_frame(film, renderer, frame)});
         picture.volume.volume = film.volume;  // another one if volume.frame is animated
@@ -228,7 +239,7 @@ std::string measure_steps(SharedRenderer& self, const Document& document, const 
         input.analytic = accuracy::analytic_scene_of(scene.volume);
         input.program = "edgesplat " EDGESPLAT_VERSION;
         input.command = "edgesplat.accuracy";
-        renderer.set_volume(volume.volume);
+        self.show(volume.volume);
         try {
             const auto progress = [stop = self.interruption()](const accuracy::Progress&) { return !stop(); };
             const accuracy::Measured measured = measure_accuracy(renderer, input, options, progress);

@@ -35,6 +35,15 @@ def test_memory_budget(ball):
             small.render(ball, size=SIZE)
 
 
+def test_a_volume_is_prepared_once(ball):
+    with Renderer() as one:
+        volume = Volume(ball)
+        first = one.render(volume, size=SIZE)
+        second = one.render(volume, size=SIZE)
+        assert first.statistics.setup_ms > 0 and second.statistics.setup_ms == 0
+        assert np.array_equal(first.color, second.color)
+
+
 def test_validation(ball):
     with Renderer(validation=True, check_numbers=True) as one:
         one.render(ball, size=SIZE)
