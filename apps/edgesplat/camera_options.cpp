@@ -9,6 +9,22 @@
 
 using edgesplat::SceneDocument;
 
+CLI::Option* add_size_option(CLI::App& command, DocumentEdits& edits) {
+    return command
+        .add_option_function<std::string>(
+            "--size",
+            [&edits](const std::string& text) {
+                const std::optional<glm::ivec2> size = parse_size(text);
+                if (!size)
+                    throw CLI::ValidationError(
+                        "--size", fmt::format("'{}' is not WxH with 1 to 16384 pixels each, such as 800x600", text));
+                edits.add([size](SceneDocument& d) { d.output.size = *size; });
+            },
+            "Picture size, pixels")
+        ->type_name("WxH")
+        ->default_str("512x512");
+}
+
 void add_camera_options(CLI::App& command, DocumentEdits& edits) {
     constexpr const char* kGroup = "Camera";
     std::vector<std::string> views;
@@ -57,20 +73,7 @@ void add_camera_options(CLI::App& command, DocumentEdits& edits) {
                     [](SceneDocument& d, double value) { d.camera.fov = value; })
         ->default_str("45")
         ->group(kGroup);
-    command
-        .add_option_function<std::string>(
-            "--size",
-            [&edits](const std::string& text) {
-                const std::optional<glm::ivec2> size = parse_size(text);
-                if (!size)
-                    throw CLI::ValidationError(
-                        "--size", fmt::format("'{}' is not WxH with 1 to 16384 pixels each, such as 800x600", text));
-                edits.add([size](SceneDocument& d) { d.output.size = *size; });
-            },
-            "Picture size, pixels")
-        ->type_name("WxH")
-        ->default_str("512x512")
-        ->group(kGroup);
+    add_size_option(command, edits)->group(kGroup);
     view->excludes(eye)->excludes(direction);
     direction->excludes(target)->group(kGroup);
     target->group(kGroup);

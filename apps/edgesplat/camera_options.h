@@ -8,3 +8,6 @@
 /// Adds --view, --eye, --target, --direction, --up, --voxel, --fov and --size. edgesplat::CameraChoice says how they
 /// combine.
 void add_camera_options(CLI::App& command, DocumentEdits& edits);
+
+/// Adds --size, of the picture.
+CLI::Option* add_size_option(CLI::App& command, DocumentEdits& edits);

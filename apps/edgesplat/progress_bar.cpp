@@ -34,14 +34,14 @@ void end_now(int) {
     _exit(kStoppedStatus);
 }
 
+}  // namespace
+
 std::string duration_text(double seconds) {
     const auto s = static_cast<long>(seconds + 0.5);
     if (s < 60) return fmt::format("{} s", s);
     if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
     return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
-
-}  // namespace
 
 void run_until_stopped(int& exit_status, const std::function<void()>& body) {
     try {

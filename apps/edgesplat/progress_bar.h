@@ -11,6 +11,9 @@ inline constexpr int kStoppedStatus = 130;  ///< exit status that a shell report
 /// Runs `body`. If it throws accuracy::Interrupted, prints the message and sets `exit_status` to kStoppedStatus.
 void run_until_stopped(int& exit_status, const std::function<void()>& body);
 
+/// A duration in words: "40 s", "2:05 min".
+std::string duration_text(double seconds);
+
 /// Redraws at most ten times a second. The destructor erases the line.
 class ProgressBar {
   public:

@@ -87,7 +87,7 @@ class SuiteRun {
 
   private:
     void load(BenchRun& result) {
-        std::vector<std::pair<VolumeSource, VolumePointer>> loaded;
+        auto loaded = suite_.loaded;
         const auto folders = volume_folders(std::filesystem::path(suite_.file).parent_path());
         for (const SuiteCase& entry : suite_.cases) {
             report("volume of " + entry.name);
@@ -95,9 +95,9 @@ class SuiteRun {
             auto found = std::ranges::find(loaded, source, &std::pair<VolumeSource, VolumePointer>::first);
             if (found == loaded.end()) {
                 loaded.emplace_back(source, std::make_shared<const Volume>(load_source(source, folders)));
-                require_samples(*loaded.back().second, "bench");
                 found = loaded.end() - 1;
             }
+            require_samples(*found->second, "bench");
             shots_.push_back(shot_of(entry, found->second));
         }
         if (shots_.empty() && result.skipped.empty()) fail("{}: no cases", suite_.file);
@@ -215,8 +215,10 @@ class SuiteRun {
     void report(const std::string& what) const {
         const double spent = seconds_since(start_);
         const double by_pieces = pieces_ > 0 ? static_cast<double>(done_) / static_cast<double>(pieces_) : 0;
-        const double share = options_.rounds ? by_pieces : std::clamp(spent / budget_, 0.0, 1.0);
-        const double left = options_.rounds ? (share > 0 ? spent / share - spent : 0) : std::max(budget_ - spent, 0.0);
+        double left = by_pieces > 0 ? spent / by_pieces - spent : 0;
+        // The first round is measured even if it exceeds the budget.
+        if (!options_.rounds) left = std::max(done_ < 2 * shots_.size() ? left : 0, budget_ - spent);
+        const double share = spent / std::max(spent + left, 1e-9);
         if (!progress_({share, left, done_, pieces_, what}))
             throw accuracy::Interrupted("stopped; nothing was written");
     }

@@ -20,6 +20,9 @@ std::string run_csv(const BenchRun& run);
 /// Tables of times, passes, work, memory and fits, and the skipped cases.
 std::string run_tables(const BenchRun& run);
 
+/// The table of a suite that volume_suite made, for its user: one line a view.
+std::string volume_table(const BenchRun& run, const Suite& suite);
+
 /// A plot as a file: its name and its content.
 struct PlotFile {
     std::string name, text;

@@ -107,14 +107,36 @@ std::string scaling_table(const BenchRun& run) {
     return "Scaling: cost = factor * x^exponent\n" + text_table(rows);
 }
 
+std::string place_of_run(const BenchRun& run) {
+    const DeviceInfo& d = run.device;
+    return fmt::format("{} ({} {}), {} processor cores; {} rounds in {:.0f} s", d.name, d.driver, d.driver_version,
+                       run.cores, run.rounds, run.seconds);
+}
+
 }  // namespace
+
+std::string volume_table(const BenchRun& run, const Suite& suite) {
+    Rows rows{{"view", "edgesplat ms", "plain ms", "ray caster ms", "first picture ms", "memory MiB"}};
+    std::string views;
+    for (const CaseResult& c : run.cases) {
+        if (c.mode != "default") continue;
+        const auto plain = std::ranges::find_if(
+            run.cases, [&](const CaseResult& other) { return other.group == c.group && other.mode == "plain"; });
+        rows.push_back({c.group, brief(c.frame.median), plain == run.cases.end() ? "-" : brief(plain->frame.median),
+                        brief(c.raycast.median), brief(c.cold.startup_ms + c.cold.first_picture_ms),
+                        mebibytes(c.stats.device_bytes)});
+        views += fmt::format("{}: {}\n", c.group, std::ranges::find(suite.cases, c.name, &SuiteCase::name)->about);
+    }
+    return fmt::format(
+        "{}; {}\n\n{}\nedgesplat: edge-preserving splatting; plain: splatting without edges; ray caster: trilinear\n"
+        "ms: time of a frame, median; first picture: from the loaded volume to its picture\nmemory: of the device\n{}",
+        suite.about, place_of_run(run), text_table(rows), views);
+}
 
 std::string run_tables(const BenchRun& run) {
     std::string out;
     if (!run.cases.empty()) {
-        const DeviceInfo& d = run.device;
-        out += fmt::format("{}: {} on {} ({} {}), {} processor cores; {} rounds in {:.0f} s\n\n", run.program,
-                           run.suite, d.name, d.driver, d.driver_version, run.cores, run.rounds, run.seconds);
+        out += fmt::format("{}: {} on {}\n\n", run.program, run.suite, place_of_run(run));
         out += fmt::format("{}\n{}\n{}", time_table(run), pass_table(run), work_table(run));
         if (!run.scaling.empty()) out += "\n" + scaling_table(run);
         out += fmt::format("host peak of all: {} MiB\n", mebibytes(run.host_peak_bytes));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/accuracy/report_cameras.h"
 #include "engine/bench/embedded_suites.h"
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
@@ -14,13 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kVolumeBudget = 50;  ///< seconds
+
 bool like(const std::string& name, const std::string& glob) {
     return ::fnmatch(glob.c_str(), name.c_str(), 0) == 0;
 }
 
 }  // namespace
 
-Suite read_suite(const std::string& name_or_path) {
+std::optional<Suite> find_suite(const std::string& name_or_path) {
     const fs::path path(name_or_path);
     if (path.extension() == ".toml")
         return parse_suite(read_text_file(path, "a suite of benchmarks"), name_or_path,
@@ -31,9 +34,38 @@ Suite read_suite(const std::string& name_or_path) {
             return parse_suite(suite.text, fmt::format("{}.toml", suite.name), volume_folders({}));
         names.emplace_back(suite.name);
     }
-    const std::string nearest = nearest_name(name_or_path, names);
-    fail("unknown suite '{}'; expected {} or a file (.toml){}", name_or_path, fmt::join(names, ", "),
-         nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    try {
+        (void)find_volume(name_or_path, volume_folders({}));
+        return {};
+    } catch (const Error& error) {
+        const std::string nearest = nearest_name(name_or_path, names);
+        fail("'{}' is neither a suite ({} or a file .toml) nor a volume: {}", name_or_path, fmt::join(names, ", "),
+             nearest.empty() ? error.what() : "did you mean " + nearest + "?");
+    }
+}
+
+Suite volume_suite(const SceneDocument& document, const std::shared_ptr<const Volume>& volume) {
+    const glm::ivec2 size = document.output.size;
+    const glm::ivec3 dims = volume->geometry.dims;
+    Suite suite{.name = document.volume.path, .file = document.volume.path, .budget = kVolumeBudget};
+    suite.about = fmt::format("{}, {} x {} x {} voxels", document.volume.path, dims.x, dims.y, dims.z);
+    const Scene scene = resolve_scene(document, *volume);
+    Settings plain = document.quality.settings;
+    plain.edges = EdgeEstimator::Off;
+    for (const accuracy::ReportCamera& camera : accuracy::report_cameras(*volume, scene, size.x, size.y)) {
+        if (camera.name == "grazing") continue;
+        const auto add = [&](const char* mode, const Settings& settings) {
+            suite.cases.push_back({.name = fmt::format("{}/{}/{}x{}", camera.name, mode, size.x, size.y),
+                                   .about = camera.what,
+                                   .group = camera.name,
+                                   .mode = mode,
+                                   .document = resolved(document, *volume, scene, camera.camera, settings)});
+        };
+        add("default", document.quality.settings);
+        add("plain", plain);
+    }
+    suite.loaded.emplace_back(suite.cases.front().document.volume, volume);
+    return suite;
 }
 
 void keep_cases(Suite& suite, const std::string& glob) {

@@ -209,8 +209,7 @@ class SuiteReader {
     void read_case(const toml::table& table, const std::string& path) {
         check_keys(table, path, {"name", "about", "camera", "series", "sizes", "modes", "scene"});
         SuiteCase made;
-        std::string about;
-        read_text(table, path, "about", about);
+        read_text(table, path, "about", made.about);
         if (!table.contains("name")) add(table, inside(path, "name"), "is missing; expected a name");
         const bool named = read_name(table, path, "name", made.group);
         if (named && !names_.insert(made.group).second)

@@ -125,13 +125,18 @@ TEST(BenchSuite, ReportsEveryProblemOnce) {
 TEST(BenchSuite, ReadsEveryEmbeddedSuite) {
     std::vector<std::string> names;
     for (const EmbeddedSuite& suite : embedded_suites()) {
-        const Suite read = read_suite(std::string(suite.name));
-        EXPECT_FALSE(read.cases.empty()) << suite.name;
+        const std::optional<Suite> read = find_suite(std::string(suite.name));
+        ASSERT_TRUE(read) << suite.name;
+        EXPECT_FALSE(read->cases.empty()) << suite.name;
         names.emplace_back(suite.name);
     }
     EXPECT_THAT(names, ::testing::UnorderedElementsAre("standard", "scaling", "full"));
-    EXPECT_THAT(refusal([] { (void)read_suite("standart"); }), HasSubstr("did you mean standard?"));
-    EXPECT_THAT(refusal([] { (void)read_suite("none.toml"); }), HasSubstr("none.toml: no such file"));
+    EXPECT_THAT(refusal([] { (void)find_suite("standart"); }), HasSubstr("did you mean standard?"));
+    EXPECT_THAT(
+        refusal([] { (void)find_suite("head.nrrd"); }),
+        AllOf(HasSubstr("'head.nrrd' is neither a suite (full, scaling, standard or a file .toml) nor a volume"),
+              HasSubstr("no such file or folder")));
+    EXPECT_THAT(refusal([] { (void)find_suite("none.toml"); }), HasSubstr("none.toml: no such file"));
 }
 
 }  // namespace

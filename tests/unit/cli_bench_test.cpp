@@ -12,6 +12,7 @@ namespace {
 using nlohmann::ordered_json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class CliBench : public CliTest {
   protected:
@@ -69,7 +70,8 @@ TEST_F(CliBench, WritesEveryKeyAndComparesRuns) {
               "cold",         "splats",      "vertices",     "fragments", "shaded_fragments", "sheets",
               "sheet_groups", "dirty_share", "device_bytes", "memory",    "host_peak_bytes",  "submissions"})
             EXPECT_TRUE(entry.contains(key) && !entry[key].is_null()) << key;
-        for (const char* pass : {"3_select_footprints", "4_sort_sheets", "4_sort_tiles", "5_draw_tiles"})
+        const char* draws = entry["mode"] == "plain" ? "5_draw_tiles" : "5_draw_surfaces";
+        for (const char* pass : {"3_select_footprints", "4_sort_sheets", "4_sort_tiles", draws})
             EXPECT_TRUE(entry["passes_ms"].contains(pass)) << pass;
         EXPECT_TRUE(entry["setup_passes_ms"].contains("2_collect_splats"));
         EXPECT_GT(entry["ratio"]["median"], 0);
@@ -99,7 +101,27 @@ TEST_F(CliBench, ListsItsCases) {
     EXPECT_EQ(listed.out, "ball-16/default/64x64\nball-16/plain/64x64\n");
 }
 
+TEST_F(CliBench, MeasuresAVolume) {
+    const ProgramRun measured = run("bench builtin:shell:24 --size 48x32 --iso 0.4 --budget 1 -o one");
+    ASSERT_EQ(measured.status, 0) << measured.err;
+    EXPECT_THAT(measured.out, StartsWith("builtin:shell:24, 24 x 24 x 24 voxels: 6 pictures, about 1 s\n"));
+    EXPECT_THAT(measured.out,
+                HasSubstr("\nview    edgesplat ms  plain ms  ray caster ms  first picture ms  memory MiB"));
+    EXPECT_THAT(measured.out, HasSubstr("\ninside: from the cavity at voxel "));
+    const ordered_json one = json("one");
+    std::vector<std::string> names;
+    for (const ordered_json& entry : one["cases"])
+        names.push_back(entry["name"]);
+    EXPECT_THAT(names, ElementsAre("far/default/48x32", "far/plain/48x32", "near/default/48x32", "near/plain/48x32",
+                                   "inside/default/48x32", "inside/plain/48x32"));
+    EXPECT_EQ(one["suite"]["name"], "builtin:shell:24");
+    EXPECT_NE(one["cases"][0]["splats"]["edge"], 0);
+    EXPECT_EQ(one["cases"][1]["splats"]["edge"], 0) << "plain splatting has no edges";
+}
+
 TEST_F(CliBench, RefusesInvalidRequestsBeforeMeasuring) {
+    EXPECT_THAT(run("bench tiny.toml --iso 3").err, HasSubstr("`bench VOLUME`; tiny.toml is a suite"));
+    EXPECT_THAT(run("bench none.nrrd").err, HasSubstr("'none.nrrd' is neither a suite"));
     EXPECT_THAT(run("bench tiny.toml -o no/such").err, HasSubstr("does not exist"));
     EXPECT_THAT(run("bench tiny.toml --compare tiny.toml").err, HasSubstr("is not a bench.json of this version"));
     EXPECT_THAT(run("bench standart").err, HasSubstr("did you mean standard?"));
