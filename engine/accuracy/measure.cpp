@@ -113,10 +113,11 @@ class Measurement {
     /// Grouped by model, so that each model is prepared once.
     void add_errors() {
         const double pixels = static_cast<double>(options_.size.x) * options_.size.y;
+        const double voxels = static_cast<double>(input_.volume->geometry.voxel_count());
         for (const ReportCamera& camera : report_.cameras)
             work_.add({"truth", references_.truth_key(camera.name), "truth, " + camera.name,
                        [this, &camera] { return references_.make_truth(camera.name, camera.camera, options_.size); }},
-                      (input_.analytic ? 2e-5 : 1e-3) * pixels);
+                      (input_.analytic ? 2e-5 : 2e-4) * pixels);
         for (const std::string& model : models_) {
             std::vector<std::size_t> of_model;
             for (std::size_t i = 0; i < keys_.size(); ++i)
@@ -127,11 +128,10 @@ class Measurement {
                            [this, &camera, settings] {
                                return references_.make(settings, camera.name, camera.camera, options_.size);
                            }},
-                          1e-4 * pixels);
+                          2e-4 * pixels + 1e-5 * voxels);
                 for (const std::size_t i : of_model)
                     work_.add({"error", error_key(i, camera), "errors, " + camera.name,
-                               [this, i, &camera] { return measure_error(i, camera); }},
-                              0.3);
+                               [this, i, &camera] { return measure_error(i, camera); }});
             }
             if (report_.surface)
                 work_.add({"edges", edges_key(model), "edges", [this, settings] {

@@ -93,5 +93,19 @@ TEST_F(AccuracyReport, ResumesAfterCtrlCWithExactlyTheSameErrors) {
         EXPECT_THAT(page, ::testing::Not(HasSubstr(outside))) << "the page must be self-contained";
 }
 
+TEST_F(AccuracyReport, QuickMeasuresLessAndSaysFirstHowLong) {
+    const ProgramRun quick = run("accuracy builtin:sphere:16 --quick --size 24x24 --report q");
+    ASSERT_EQ(quick.status, 0) << quick.err;
+    EXPECT_THAT(quick.out, ::testing::MatchesRegex("[0-9]+ measurements, about [0-9]+ s\n.*"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "q" / "index.html"));
+    const ordered_json json = errors_of("q");
+    EXPECT_EQ(json["options"]["width"], 24) << "a given option counts";
+    EXPECT_EQ(json["options"]["repeats"], 1);
+    EXPECT_EQ(json["options"]["orbit_frames"], 0);
+    EXPECT_EQ(json["cameras"].size(), 1U);
+    for (const ordered_json& row : json["rows"])
+        EXPECT_TRUE(row["kind"] != "step" || row["knob"] == "edges") << row["name"];
+}
+
 }  // namespace
 }  // namespace edgesplat

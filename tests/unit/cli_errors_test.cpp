@@ -134,6 +134,11 @@ INSTANTIATE_TEST_SUITE_P(
                "accuracy builtin:sphere:16 --report r --crop 0,0,0,16,3,3",
                1,
                {"crop", "16 x 16 x 16"}},
+        Misuse{"AccuracyQuickFull", "accuracy builtin:sphere --report r --quick --full", 2, {"--quick", "--full"}},
+        Misuse{"AccuracyQuickLarge",
+               "accuracy builtin:sphere:100 --report r --quick",
+               1,
+               {"100 x 100 x 100 voxels: --quick measures at most 500000", "--crop 10,10,10,88,88,88"}},
         Misuse{"CompareNoFile", "compare a.png b.png", 2, {"a.png", "no such file"}}),
     [](const ::testing::TestParamInfo<Misuse>& parameter) { return std::string(parameter.param.name); });
 
