@@ -85,7 +85,7 @@ void check_quick(const edgesplat::Volume& volume) {
     const auto voxels = volume.geometry.voxel_count();
     if (voxels <= kMostQuickVoxels) return;
     const glm::dvec3 all(dims);
-    glm::ivec3 part(all * std::cbrt(static_cast<double>(kMostQuickVoxels) / static_cast<double>(voxels)));
+    const glm::ivec3 part(all * std::cbrt(static_cast<double>(kMostQuickVoxels) / static_cast<double>(voxels)));
     const glm::ivec3 low = (dims - part) / 2, high = low + part - 1;
     edgesplat::fail(
         "{}: {} x {} x {} voxels: --quick measures at most {}; leave --quick out, or measure the middle with --crop "

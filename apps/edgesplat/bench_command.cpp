@@ -47,11 +47,9 @@ edgesplat::SceneDocument document_of(const BenchCommand& command) {
 }
 
 /// The suite that is named, or that of the volume that is named.
-edgesplat::bench::Suite suite_of(const BenchCommand& command, bool& of_volume) {
+edgesplat::bench::Suite suite_of(const BenchCommand& command) {
     edgesplat::SceneDocument document = document_of(command);
-    const auto suite = edgesplat::bench::find_suite(command.suite);
-    of_volume = !suite;
-    if (suite) {
+    if (const auto suite = edgesplat::bench::find_suite(command.suite)) {
         if (document != edgesplat::SceneDocument{})
             edgesplat::fail("options of a scene or volume are for `bench VOLUME`; {} is a suite", command.suite);
         return *suite;
@@ -68,8 +66,8 @@ void run(const BenchCommand& command, const std::string& command_line) {
     namespace bench = edgesplat::bench;
     const auto earlier = command.earlier.empty() ? nlohmann::ordered_json() : bench::read_run(command.earlier);
     if (!command.later.empty()) return print_comparison(earlier, bench::read_run(command.later));
-    bool of_volume = false;
-    bench::Suite suite = suite_of(command, of_volume);
+    bench::Suite suite = suite_of(command);
+    const bool of_volume = !suite.loaded.empty();
     if (!command.cases.empty()) bench::keep_cases(suite, command.cases);
     if (command.list) return print_cases(suite);
     if (!command.folder.empty()) bench::check_run_folder(command.folder);

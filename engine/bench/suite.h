@@ -34,7 +34,7 @@ struct Suite {
     double budget = 240;  ///< seconds
     std::vector<SuiteCase> cases;
     std::vector<SkippedCase> skipped;  ///< cases whose volume is missing
-    /// Volumes that need not be read.
+    /// Volumes that need not be read: that of volume_suite.
     std::vector<std::pair<VolumeSource, std::shared_ptr<const Volume>>> loaded;
 };
 
