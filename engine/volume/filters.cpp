@@ -169,13 +169,12 @@ std::vector<float> bspline_coefficients(const std::vector<float>& field, const g
 
 SplineTaps spline_taps(double place, int size) {
     const int last = size - 1;
-    const double held = std::clamp(place, 0.0, static_cast<double>(last)), beyond = place - held;
+    const double held = std::clamp(place, 0.0, static_cast<double>(last));
     const int cell = static_cast<int>(held);
     const double t = held - cell, s = 1 - t;
     SplineTaps taps{
         {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6},
         {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2},
-        {},
         {}};
     for (int k = 0; k < 4; ++k)
         taps.places[static_cast<std::size_t>(k)] = std::clamp(cell + k - 1, 0, last);
@@ -202,8 +201,6 @@ SplineTaps spline_taps(double place, int size) {
         taps.weights = {0, 1, 0, 0};
         taps.slopes = {};
     }
-    for (std::size_t k = 0; k < 4; ++k)
-        taps.beyond[k] = beyond * taps.slopes[k];
     return taps;
 }
 

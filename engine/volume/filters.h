@@ -66,8 +66,7 @@ std::vector<float> bspline_coefficients(const std::vector<float>& field, const g
 /// the slope at the nearest place between the outermost samples.
 struct SplineTaps {
     std::array<double, 4> weights{}, slopes{};
-    std::array<int, 4> places{};     ///< index of each coefficient; those beyond a border have weight 0
-    std::array<double, 4> beyond{};  ///< slopes x the way from there to the position: how the spline continues linearly
+    std::array<int, 4> places{};  ///< index of each coefficient; those beyond a border have weight 0
 };
 /// `place` may be any number. size >= 1.
 SplineTaps spline_taps(double place, int size);

@@ -1,12 +1,12 @@
 // The scalar field between voxels, in index space; samples are scaled to the value range. docs/method.md, pass 1.
 // The including shader declares `volume` and `coefficients` (r32f image3D) and the variable `dims`.
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/common/trilinear.glsl"
 
 // Along one axis: the four coefficients around a point of the spline, and their weights for value and slope.
 struct SplineTaps {
     ivec4 places;  // a place beyond a border has weight 0
-    vec4 weights, slopes;  // at the point, or at the outermost sample before it
-    vec4 beyond;           // what the way from there to the point adds to the weights
+    vec4 weights, slopes;
 };
 
 // A coefficient beyond a border is the linear extrapolation of the two before it. `cell`: 0 to n - 1.
@@ -16,9 +16,9 @@ vec4 within_border(vec4 w, int cell, int n) {
     return cell == n - 1 ? vec4(w.x - w.z, w.y + 2.0 * w.z, 0.0, w.w) : w;
 }
 
-// At `origin` + p along an axis of n voxels. Mirrors engine/volume/filters.h.
+// At `origin` + p along an axis of n voxels, or at the outermost sample before it. Mirrors engine/volume/filters.h.
 SplineTaps spline_taps(int origin, float p, int n) {
-    float held = clamp(p, float(-origin), float(n - 1 - origin)), c = floor(held), t = held - c, s = 1.0 - t;
+    float c = floor(p), t = p - c, s = 1.0 - t;
     int cell = origin + int(c);
     SplineTaps taps;
     taps.places = clamp(cell + ivec4(-1, 0, 1, 2), 0, n - 1);
@@ -26,40 +26,43 @@ SplineTaps spline_taps(int origin, float p, int n) {
     taps.slopes = within_border(vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t), cell, n);
     taps.weights = n == 1 ? vec4(0.0, 1.0, 0.0, 0.0) : taps.weights;
     taps.slopes = n == 1 ? vec4(0.0) : taps.slopes;
-    taps.beyond = (p - held) * taps.slopes;
     return taps;
 }
 
-// The spline is linear beyond the outermost samples: f(q) + grad f(q) . (p - q), where q is the point of their box
-// nearest to p. Products of the axes' ways beyond would let matter grow at the box's edges.
+// The point nearest to `origin` + p between the outermost samples, relative to `origin`.
+vec3 between_samples(ivec3 origin, vec3 p) { return clamp(p, vec3(-origin), vec3(dims - 1 - origin)); }
 
-float bspline(vec3 p) {
-    SplineTaps x = spline_taps(0, p.x, dims.x), y = spline_taps(0, p.y, dims.y), z = spline_taps(0, p.z, dims.z);
-    float sum = 0.0;
+// (gradient, value) of the spline at voxel `origin` + p. Beyond the outermost samples it is linear: f(q) + grad f(q) .
+// (p - q), with the point q between them that is nearest to p; the gradient is that at q.
+vec4 bspline_slope(ivec3 origin, vec3 p) {
+    vec3 q = between_samples(origin, p);
+    SplineTaps x = spline_taps(origin.x, q.x, dims.x), y = spline_taps(origin.y, q.y, dims.y), z = spline_taps(origin.z, q.z, dims.z);
+    vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
             vec2 line = vec2(0.0);
             for (int i = 0; i < 4; ++i)
-                line += vec2(x.weights[i], x.beyond[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+                line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
             float wy = y.weights[j], wz = z.weights[k];
-            sum += line.x * (wy * wz + y.beyond[j] * wz + wy * z.beyond[k]) + line.y * wy * wz;
+            sum += vec4(line.y * wy * wz, line.x * y.slopes[j] * wz, line.x * wy * z.slopes[k], line.x * wy * wz);
         }
-    return sum;
+    return vec4(sum.xyz, sum.w + dot(sum.xyz, p - q));
 }
 
-// (gradient, value) of the spline at voxel `origin` + p.
-vec4 bspline_slope(ivec3 origin, vec3 p) {
-    SplineTaps x = spline_taps(origin.x, p.x, dims.x), y = spline_taps(origin.y, p.y, dims.y), z = spline_taps(origin.z, p.z, dims.z);
-    vec4 sum = vec4(0.0);
+float bspline(vec3 p) {
+    vec3 q = between_samples(ivec3(0), p);
+    SplineTaps x = spline_taps(0, q.x, dims.x), y = spline_taps(0, q.y, dims.y), z = spline_taps(0, q.z, dims.z);
+    float sum = 0.0;
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
-            vec3 line = vec3(0.0);
+            float line = 0.0;
             for (int i = 0; i < 4; ++i)
-                line += vec3(x.weights[i], x.beyond[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
-            float wy = y.weights[j], wz = z.weights[k], w = wy * wz, all = w + y.beyond[j] * wz + wy * z.beyond[k];
-            sum += vec4(line.z * all, y.slopes[j] * (line.x * (wz + z.beyond[k]) + line.y * wz),
-                        z.slopes[k] * (line.x * (wy + y.beyond[j]) + line.y * wy), line.x * all + line.y * w);
+                line += x.weights[i] * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            sum += y.weights[j] * z.weights[k] * line;
         }
+    IF_ANY(p != q) {
+        if (p != q) sum = bspline_slope(ivec3(0), p).w;
+    }
     return sum;
 }
 

@@ -129,8 +129,8 @@ TEST(Thin, TheBorderIsSearchedOnlyWhereRaysMayEnterMatter) {
     for (const double side : {-1.0, 1.0}) {
         shot.camera = look(*shot.volume, {11.5 + side * 60, 11.5, 11.5}, glm::dvec3(11.5), 40);
         const RenderResult result = render(shot);
-        const bool searched = std::ranges::any_of(
-            result.stats.passes, [](const PassTime& pass) { return pass.name == "5_begin_surfaces"; });
+        const bool searched = std::ranges::any_of(result.stats.passes,
+                                                  [](const PassTime& pass) { return pass.name == "5_begin_surfaces"; });
         EXPECT_EQ(searched, side < 0);
         EXPECT_EQ(result.color.at(32, 32, 3), 1.0F) << side;
         EXPECT_EQ(result.color.at(3, 32, 3), 0.0F) << side;
