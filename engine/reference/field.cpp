@@ -12,23 +12,29 @@ namespace edgesplat::reference {
 
 namespace {
 
-/// The spline at the point nearest to p between the outermost samples: its value, or with `along` its derivative along
-/// that axis.
+/// Value of the spline, or with `along` its derivative along that axis. Beyond the outermost samples it is linear,
+/// without products of the axes' ways beyond.
 double spline(const Field& field, const glm::dvec3& p, int along = -1) {
+    const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
     std::array<SplineTaps, 3> taps;
-    std::array<const std::array<double, 4>*, 3> weights{};
+    std::array<std::array<double, 4>, 3> beyond{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        taps[a] = spline_taps(p[axis], field.dims[axis]);
-        weights[a] = axis == along ? &taps[a].slopes : &taps[a].weights;
+        taps[a] = spline_taps(q[axis], field.dims[axis]);
+        if (axis == along)
+            taps[a].weights = taps[a].slopes;
+        else
+            for (std::size_t k = 0; k < 4; ++k)
+                beyond[a][k] = (p[axis] - q[axis]) * taps[a].slopes[k];
     }
     double sum = 0;
     for (std::size_t z = 0; z < 4; ++z) {
         for (std::size_t y = 0; y < 4; ++y) {
             for (std::size_t x = 0; x < 4; ++x) {
                 const glm::ivec3 i{taps[0].places[x], taps[1].places[y], taps[2].places[z]};
-                sum += (*weights[0])[x] * (*weights[1])[y] * (*weights[2])[z] *
-                       static_cast<double>(field.coefficients[field.offset(i)]);
+                const double wx = taps[0].weights[x], wy = taps[1].weights[y], wz = taps[2].weights[z];
+                const double more = beyond[0][x] * wy * wz + wx * beyond[1][y] * wz + wx * wy * beyond[2][z];
+                sum += (wx * wy * wz + more) * static_cast<double>(field.coefficients[field.offset(i)]);
             }
         }
     }
@@ -77,8 +83,8 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
 }
 
 double sample(const Field& field, const glm::dvec3& p, bool cubic) {
+    if (cubic) return spline(field, p);
     const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
-    if (cubic) return spline(field, q) + (p == q ? 0 : glm::dot(spline_gradient(field, q), p - q));
     const glm::ivec3 cell = glm::max(glm::min(glm::ivec3(glm::floor(q)), field.dims - 2), glm::ivec3(0));
     const glm::dvec3 t = q - glm::dvec3(cell);
     const auto row = [&](int y, int z) {

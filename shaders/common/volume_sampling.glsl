@@ -32,8 +32,27 @@ SplineTaps spline_taps(int origin, float p, int n) {
 // The point nearest to `origin` + p between the outermost samples, relative to `origin`.
 vec3 between_samples(ivec3 origin, vec3 p) { return clamp(p, vec3(-origin), vec3(dims - 1 - origin)); }
 
-// (gradient, value) of the spline at voxel `origin` + p. Beyond the outermost samples it is linear: f(q) + grad f(q) .
-// (p - q), with the point q between them that is nearest to p; the gradient is that at q.
+// (gradient, value) at `origin` + p beyond the outermost samples. There the spline is linear: f(q) + grad f(q) . (p - q),
+// with the point q between them that is nearest to p. Products of the axes' ways beyond would let matter grow at the box's
+// edges.
+vec4 spline_beyond(ivec3 origin, vec3 p, vec3 q) {
+    SplineTaps x = spline_taps(origin.x, q.x, dims.x), y = spline_taps(origin.y, q.y, dims.y), z = spline_taps(origin.z, q.z, dims.z);
+    vec3 way = p - q;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j) {
+            vec2 line = vec2(0.0);
+            for (int i = 0; i < 4; ++i)
+                line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            float wy = y.weights[j], wz = z.weights[k], by = way.y * y.slopes[j], bz = way.z * z.slopes[k];
+            float all = wy * wz + by * wz + wy * bz, along = way.x * line.y;
+            sum += vec4(line.y * all, y.slopes[j] * (line.x * (wz + bz) + along * wz), z.slopes[k] * (line.x * (wy + by) + along * wy),
+                        line.x * all + along * wy * wz);
+        }
+    return sum;
+}
+
+// (gradient, value) of the spline at voxel `origin` + p.
 vec4 bspline_slope(ivec3 origin, vec3 p) {
     vec3 q = between_samples(origin, p);
     SplineTaps x = spline_taps(origin.x, q.x, dims.x), y = spline_taps(origin.y, q.y, dims.y), z = spline_taps(origin.z, q.z, dims.z);
@@ -46,7 +65,10 @@ vec4 bspline_slope(ivec3 origin, vec3 p) {
             float wy = y.weights[j], wz = z.weights[k];
             sum += vec4(line.y * wy * wz, line.x * y.slopes[j] * wz, line.x * wy * z.slopes[k], line.x * wy * wz);
         }
-    return vec4(sum.xyz, sum.w + dot(sum.xyz, p - q));
+    IF_ANY(p != q) {
+        if (p != q) sum = spline_beyond(origin, p, q);
+    }
+    return sum;
 }
 
 float bspline(vec3 p) {
@@ -61,7 +83,7 @@ float bspline(vec3 p) {
             sum += y.weights[j] * z.weights[k] * line;
         }
     IF_ANY(p != q) {
-        if (p != q) sum = bspline_slope(ivec3(0), p).w;
+        if (p != q) sum = spline_beyond(ivec3(0), p, q).w;
     }
     return sum;
 }

@@ -81,8 +81,11 @@ std::vector<std::pair<const char*, Shot>> shots() {
 TEST_F(KeptBetweenRuns, DrawTheSamePicture) {
     for (const auto& [name, shot] : shots()) {
         SCOPED_TRACE(name);
+        Renderer fresh({.device = test_renderer().device().name, .validation = true});
         Renderer first = next_run(), second = next_run();
-        const RenderResult computed = picture(first, shot), read = picture(second, shot);
+        const RenderResult computed = picture(fresh, shot);
+        picture(first, shot);
+        const RenderResult read = picture(second, shot);
         EXPECT_FALSE(computed.stats.splats_read);
         EXPECT_TRUE(read.stats.splats_read);
         EXPECT_EQ(read.stats.voxels_estimated, 0U);
