@@ -14,6 +14,7 @@
 #include "engine/bench/run.h"
 #include "engine/bench/run_output.h"
 #include "engine/bench/suite.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 

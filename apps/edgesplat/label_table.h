@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/scene/effects.h"
+#include "engine/scene/scene_document.h"
 #include "engine/volume/volume.h"
 
 /// Describes a volume's labels: sets "labels", a list with number, name, colour (linear light) and voxels. If samples

@@ -9,6 +9,7 @@
 #include "apps/edgesplat/cpu_renderers.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/mpi_ranks.h"
+#include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/accuracy/json_text.h"

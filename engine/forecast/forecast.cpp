@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/passes/2_collect_splats.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/store/light.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"

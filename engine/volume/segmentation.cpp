@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/packed_volume.h"
 #include "engine/volume/parallel.h"
 
 namespace edgesplat {
