@@ -1,6 +1,5 @@
 // The scalar field between voxels, in index space; samples are scaled to the value range. docs/method.md, pass 1.
 // The including shader declares `volume` and `coefficients` (r32f image3D) and the variable `dims`.
-#include "shaders/drivers/if_any.glsl"
 #include "shaders/common/trilinear.glsl"
 
 // Along one axis: the four coefficients around a point of the spline, and their weights for value and slope.
@@ -32,61 +31,31 @@ SplineTaps spline_taps(int origin, float p, int n) {
 // The point nearest to `origin` + p between the outermost samples, relative to `origin`.
 vec3 between_samples(ivec3 origin, vec3 p) { return clamp(p, vec3(-origin), vec3(dims - 1 - origin)); }
 
-// (gradient, value) at `origin` + p beyond the outermost samples. There the spline is linear: f(q) + grad f(q) . (p - q),
-// with the point q between them that is nearest to p. Products of the axes' ways beyond would let matter grow at the box's
-// edges.
-vec4 spline_beyond(ivec3 origin, vec3 p, vec3 q) {
-    SplineTaps x = spline_taps(origin.x, q.x, dims.x), y = spline_taps(origin.y, q.y, dims.y), z = spline_taps(origin.z, q.z, dims.z);
-    vec3 way = p - q;
-    vec4 sum = vec4(0.0);
-    for (int k = 0; k < 4; ++k)
-        for (int j = 0; j < 4; ++j) {
-            vec2 line = vec2(0.0);
-            for (int i = 0; i < 4; ++i)
-                line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
-            float wy = y.weights[j], wz = z.weights[k], by = way.y * y.slopes[j], bz = way.z * z.slopes[k];
-            float all = wy * wz + by * wz + wy * bz, along = way.x * line.y;
-            sum += vec4(line.y * all, y.slopes[j] * (line.x * (wz + bz) + along * wz), z.slopes[k] * (line.x * (wy + by) + along * wy),
-                        line.x * all + along * wy * wz);
-        }
-    return sum;
-}
-
-// (gradient, value) of the spline at voxel `origin` + p.
+// (gradient, value) of the spline at voxel `origin` + p. Beyond the outermost samples it is linear: f(q) + grad f(q) .
+// (p - q), with the point q between them that is nearest to p. Products of the axes' ways beyond would let matter grow at
+// the box's edges.
 vec4 bspline_slope(ivec3 origin, vec3 p) {
-    vec3 q = between_samples(origin, p);
+    vec3 q = between_samples(origin, p), way = p - q;
     SplineTaps x = spline_taps(origin.x, q.x, dims.x), y = spline_taps(origin.y, q.y, dims.y), z = spline_taps(origin.z, q.z, dims.z);
-    vec4 sum = vec4(0.0);
-    for (int k = 0; k < 4; ++k)
+    vec4 sum = vec4(0.0);    // (gradient, value) at q
+    vec3 mixed = vec3(0.0);  // second derivatives there: yz, xz, xy
+    for (int k = 0; k < 4; ++k) {
+        vec3 plane = vec3(0.0);  // derivatives by y, by x, by both
         for (int j = 0; j < 4; ++j) {
             vec2 line = vec2(0.0);
             for (int i = 0; i < 4; ++i)
                 line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
             float wy = y.weights[j], wz = z.weights[k];
             sum += vec4(line.y * wy * wz, line.x * y.slopes[j] * wz, line.x * wy * z.slopes[k], line.x * wy * wz);
+            plane += vec3(y.slopes[j], wy, y.slopes[j]) * line.xyy;
         }
-    IF_ANY(p != q) {
-        if (p != q) sum = spline_beyond(origin, p, q);
+        mixed += vec3(z.slopes[k], z.slopes[k], z.weights[k]) * plane;
     }
-    return sum;
+    vec3 turned = vec3(dot(mixed.yz, way.zy), dot(mixed.xz, way.zx), dot(mixed.xy, way.yx));
+    return vec4(sum.xyz + turned, sum.w + dot(sum.xyz, way));
 }
 
-float bspline(vec3 p) {
-    vec3 q = between_samples(ivec3(0), p);
-    SplineTaps x = spline_taps(0, q.x, dims.x), y = spline_taps(0, q.y, dims.y), z = spline_taps(0, q.z, dims.z);
-    float sum = 0.0;
-    for (int k = 0; k < 4; ++k)
-        for (int j = 0; j < 4; ++j) {
-            float line = 0.0;
-            for (int i = 0; i < 4; ++i)
-                line += x.weights[i] * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
-            sum += y.weights[j] * z.weights[k] * line;
-        }
-    IF_ANY(p != q) {
-        if (p != q) sum = spline_beyond(ivec3(0), p, q).w;
-    }
-    return sum;
-}
+float bspline(vec3 p) { return bspline_slope(ivec3(0), p).w; }
 
 // Central difference at a voxel, one-sided at the border, 0 along an axis of one voxel. Unit: value range per voxel.
 vec3 voxel_gradient(ivec3 p) {
