@@ -295,7 +295,8 @@ Volume load_level(const Volume& volume, int level) {
 
 Volume small_labels_in_memory(Volume volume) {
     const bool small = volume.geometry.voxel_count() <= kMaxVoxelsAnalysed;
-    return volume.packed && volume.labels && small ? load_level(volume, 0) : volume;
+    if (volume.packed && volume.labels && small) return load_level(volume, 0);
+    return volume;
 }
 
 int finest_level_within(const PackedVolume& packed, std::size_t voxels) {
