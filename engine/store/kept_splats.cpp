@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "engine/checked_file.h"
 #include "engine/fnv1a.h"

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Gt;
 
-/// A folder for files between runs, in place of the user's. Compiled pipelines stay where they are.
+/// A folder for files between runs, in place of the user's.
 class KeptBetweenRuns : public testing::Test {
   protected:
     KeptBetweenRuns() {
