@@ -8,6 +8,7 @@
 #include "engine/image/sample_mean.h"
 #include "engine/overlays/overlays.h"
 #include "engine/renderer/state.h"
+#include "engine/scene/mixture.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/kernel.h"
@@ -93,12 +94,13 @@ void Renderer::divide_sheets(PartExchange* exchange) {
 
 FrameForecast Renderer::forecast(const FrameRequest& request) {
     require_samples(*request.volume, "a forecast of the frame");
-    const CollectionPlan wanted = planned_collection(request);
-    const auto known = request.volume == state_->splats.level().volume.volume()
-                           ? state_->splats.collected_splats(wanted)
-                           : std::nullopt;
-    return forecast_frame(request, wanted, known ? *known : count_splats(*request.volume, wanted),
-                          kernel_reach(drawn_settings(request)), state_->session.profile());
+    const auto count = [&](const FrameRequest& part, const CollectionPlan& wanted) {
+        const auto known = part.volume == state_->splats.level().volume.volume()
+                               ? state_->splats.collected_splats(wanted)
+                               : std::nullopt;
+        return known ? *known : count_splats_of(part, wanted);
+    };
+    return forecast_frame(request, count, state_->session.profile());
 }
 
 std::vector<FittingChange> Renderer::fitting_changes(const FrameRequest& request) const {
@@ -154,14 +156,24 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     const gpu::PipelineCreation made = pipelines.creation();
     // Optical depth needs all voxels; surface splats are some. So it is drawn from a list of its own.
     AovRequest outputs = aovs;
-    const bool tau_apart = aovs.tau && draws_surfaces(settings, scene, *self.splats.original());
+    const bool tau_apart = aovs.tau && (draws_surfaces(settings, scene, *self.splats.original()) ||
+                                        mixture_of(settings, scene, *self.splats.original()));
     outputs.tau = outputs.tau && !tau_apart;
-    self.splats.provide({self.splats.original(), scene, camera, wanted, size, outputs}, stats);
+    FrameRequest request{self.splats.original(), scene, camera, wanted, size, outputs};
+    self.splats.provide(request, stats);
     const LevelStore& level = self.splats.level();
+    request.volume = level.volume.volume();
+    const std::vector<FrameRequest> parts =
+        level.volume.in_blocks() ? std::vector<FrameRequest>{request} : drawn_parts(request);
     const auto draw = [&](std::uint32_t payload, const glm::dvec2& offset) {
-        FramePlan plan = drawer.plan(level, scene, camera, settings, size, payload);
-        if (offset != glm::dvec2(0)) shift_rays(plan, offset);
-        drawer.draw(level, std::move(plan));
+        const auto plan = [&](const CollectedSplats& splats, const FrameRequest& part) {
+            FramePlan out = drawer.plan(splats, part.scene, camera, drawn_settings(part), size, payload);
+            if (offset != glm::dvec2(0)) shift_rays(out, offset);
+            return out;
+        };
+        FramePlan of_all = plan(level.all(), parts.back());
+        if (parts.size() == 1) return drawer.draw(level.all(), std::move(of_all));
+        drawer.draw_mixed(level.opaque(), plan(level.opaque(), parts.front()), level.all(), std::move(of_all));
     };
 
     const auto start = Clock::now();
@@ -183,8 +195,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     stats.sheet_groups = drawer.drawn().params.group_count;
     result.color = scene.effects.samples > 1 ? mean.image() : take(floats(drawer.pixels()), size, 0, 4);
 
-    const auto add_output = [&](std::uint32_t payload) {
-        draw(payload, {0, 0});
+    const auto take_output = [&](std::uint32_t payload) {
         for (const PassTime& pass : drawer.times())
             stats.passes.push_back({payload_name(payload) + ": " + pass.name, pass.milliseconds});
         for (const Aov& aov : edgesplat::aovs())
@@ -192,10 +203,16 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
                 result.*image_of(aov) = take(floats(drawer.pixels()), size, aov.first, aov.count());
     };
     for (const std::uint32_t payload : payloads_of(outputs))
-        if (payload != shader::PAYLOAD_COLOR) add_output(payload);
+        if (payload != shader::PAYLOAD_COLOR) {
+            draw(payload, {0, 0});
+            take_output(payload);
+        }
     if (tau_apart) {
-        self.splats.provide({self.splats.original(), scene, camera, wanted, size, aovs}, stats);
-        add_output(shader::PAYLOAD_TAU);
+        request.volume = self.splats.original();
+        request.outputs = aovs;
+        self.splats.provide(request, stats);
+        drawer.draw(level.all(), drawer.plan(level.all(), scene, camera, settings, size, shader::PAYLOAD_TAU));
+        take_output(shader::PAYLOAD_TAU);
     }
     const Volume& volume = *level.volume.volume();
     if (scene.effects.overlays.any()) draw_overlays(result.color, volume, scene, camera);
@@ -204,11 +221,12 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     stats.pipeline_milliseconds = pipelines.creation().milliseconds - made.milliseconds;
     stats.device = device.info();
     stats.voxels = volume.geometry.voxel_count();
-    const SplatLists& splats = level.splats.lists();
-    stats.splats_collected = splats.splat_count;
+    for (const SplatStore* list : {&level.splats, &level.surfaces}) {
+        stats.splats_collected += list->lists().splat_count;
+        stats.edge_splats += list->lists().edge_splat_count;
+    }
     // Two rounds may examine the same splat, so the count is clamped.
-    stats.splats_culled = splats.splat_count - std::min(drawer.drawn().splats_examined, splats.splat_count);
-    stats.edge_splats = splats.edge_splat_count;
+    stats.splats_culled = stats.splats_collected - std::min(drawer.splats_examined(), stats.splats_collected);
     stats.device_bytes = device.allocated_bytes();
     for (const auto& [name, allocation] : device.allocations())
         if (!name.empty()) stats.memory.push_back({name, allocation.peak});

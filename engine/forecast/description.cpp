@@ -112,11 +112,10 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
             if (effect.reason(with).empty()) {
                 row.obstacle = "it has no effect with the other settings of this picture";
             } else {
-                const double reach = kernel_reach(drawn_settings(with));
-                const CollectionPlan collection = planned_collection(with);
-                const SplatCount splats =
-                    collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
-                const FrameForecast other = forecast_frame(with, collection, splats, reach, *forecast.profile);
+                const auto count = [&](const FrameRequest& part, const CollectionPlan& collection) {
+                    return collection == forecast.collection ? forecast.splats : count_splats_of(part, collection);
+                };
+                const FrameForecast other = forecast_frame(with, count, *forecast.profile);
                 if (!runs(effect, described_passes(with, other, device))) {
                     row.obstacle = "device profile " + std::string(forecast.profile->name) + " does not use it";
                     rows.push_back(std::move(row));
@@ -148,7 +147,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     }
     out.size = request.size;
     out.voxels = request.volume->geometry.voxel_count();
-    out.splats = forecast.splats.extent.count;
+    out.splats = forecast.splats.extent.count + (forecast.behind ? forecast.behind->splats.extent.count : 0);
     out.splats_from = forecast.splats.from == SplatCount::From::Frame ? "as collected" : "counted on the host";
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;
@@ -207,11 +206,7 @@ std::uint64_t FrameDescription::total_bytes() const {
 FrameDescription describe_frame(const FrameRequest& request, const std::string& profile) {
     check(request);
     const gpu::ChosenProfile chosen = gpu::choose_profile(profile);
-    const CollectionPlan collection = planned_collection(request);
-    const SplatCount splats = count_splats(*request.volume, collection);
-    FrameDescription out = describe(
-        request, forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request)), *chosen.profile),
-        nullptr);
+    FrameDescription out = describe(request, forecast_frame(request, count_splats_of, *chosen.profile), nullptr);
     out.profile = chosen.profile->name;
     out.profile_reason = chosen.reason;
     return out;

@@ -76,7 +76,18 @@ class Passes {
         : milliseconds_per_(on_processor(device) ? 1e-6 : 1e-6 / kGpuFactor), profile_(&profile) {}
 
     void add(const char* draw, const char* name, double nanoseconds, std::vector<gpu::PipelineVariant> pipelines) {
-        out_.push_back({draw, name, "", std::move(pipelines), nanoseconds * milliseconds_per_ * again_, {}});
+        const double milliseconds = nanoseconds * milliseconds_per_ * again_;
+        // Both parts of a mixture run it.
+        const auto same = std::ranges::find_if(
+            out_, [&](const PassDescription& pass) { return pass.draw == draw && pass.name == name; });
+        if (same == out_.end()) {
+            out_.push_back({draw, name, "", std::move(pipelines), milliseconds, {}});
+            return;
+        }
+        same->estimated_milliseconds += milliseconds;
+        for (gpu::PipelineVariant& pipeline : pipelines)
+            if (std::ranges::find(same->pipelines, text_of(pipeline), text_of) == same->pipelines.end())
+                same->pipelines.push_back(std::move(pipeline));
     }
 
     void add_setup(const FrameForecast& f) {
@@ -87,7 +98,7 @@ class Passes {
             std::vector<gpu::PipelineVariant> axes;
             for (std::uint32_t axis = 0; axis < 3; ++axis)
                 axes.push_back(
-                    variant("1a_mark_buried.comp", passes::mark_constants(axis, plan.params.iso_count, plan.clip)));
+                    variant("1a_mark_buried.comp", passes::mark_constants(axis, plan.params.opaque_count, plan.clip)));
             add("setup", "1a_mark_buried", kRates.bury_voxel * voxels, axes);
         }
         if (plan.edge_field) {
@@ -107,7 +118,7 @@ class Passes {
         const double splats = static_cast<double>(f.splats.extent.count);
         const Clip& clip = request.scene.effects.clip;
         const passes::SplatLight in{
-            .iso_count = f.collection.params.iso_count,
+            .iso_count = static_cast<std::uint32_t>(request.scene.iso_values.size()),
             .clip = {static_cast<std::uint32_t>(clip.keep.size()), static_cast<std::uint32_t>(clip.remove.size())},
             .surfaces = f.collection.surfaces,
             .transfer = !request.scene.transfer.empty()};
@@ -177,7 +188,8 @@ class Passes {
             if (plan.refined) {
                 std::vector<gpu::PipelineVariant> steps;
                 for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
-                    steps.push_back(variant("5_refine_pixels.comp", passes::refine_constants(step)));
+                    steps.push_back(
+                        variant("5_refine_pixels.comp", passes::refine_constants(step, plan.variant.mixed)));
                 add(name, "5_refine_pixels", kRates.composite_pixel * pixels, steps);
                 out_.back().depends = true;
             }
@@ -188,6 +200,9 @@ class Passes {
             add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
                 {{{"group_rect.vert", "6_composite_sheet.frag"}, {{shader::SPEC_PAYLOAD, plan.variant.payload}}}});
         }
+        if (plan.variant.mixed && plan.variant.surfaces) return;
+        if (plan.variant.mixed)
+            add(name, "6_join_surfaces", kRates.resolve_pixel * pixels, {variant("6_join_surfaces.comp", {})});
         add(name, "7_resolve", kRates.resolve_pixel * pixels,
             {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
     }
@@ -206,10 +221,15 @@ class Passes {
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
                                               const DeviceInfo* device) {
     Passes passes(device, *forecast.profile);
-    passes.add_setup(forecast);
-    passes.add_reach(request, forecast);
-    for (const ForecastDraw& draw : forecast.draws)
-        passes.add_draw(request, draw);
+    for (const FrameForecast* part : {forecast.behind.get(), &forecast}) {
+        if (!part) continue;
+        passes.add_setup(*part);
+        passes.add_reach(request, *part);
+    }
+    for (std::size_t i = 0; i < forecast.draws.size(); ++i) {
+        if (forecast.behind) passes.add_draw(request, forecast.behind->draws[i]);
+        passes.add_draw(request, forecast.draws[i]);
+    }
     return passes.take();
 }
 

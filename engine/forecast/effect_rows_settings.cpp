@@ -18,8 +18,33 @@ void cut_at_faces(FrameRequest& request) {
 
 void make_opaque(FrameRequest& request) {
     const glm::dvec3 spacing = request.volume->geometry.spacing();
-    request.scene.materials.back().extinction = 2 / std::min({spacing.x, spacing.y, spacing.z});
+    double& extinction = request.scene.materials.back().extinction;
+    extinction = std::max(extinction, 2 / std::min({spacing.x, spacing.y, spacing.z}));
 }
+
+namespace {
+
+/// Only the highest values are matter, and opaque.
+void show_opaque_matter(FrameRequest& request) {
+    cut_at_faces(request);
+    request.settings.edges = EdgeEstimator::Cubic;
+    const glm::dvec3 spacing = request.volume->geometry.spacing();
+    for (Material& material : request.scene.materials)
+        material.extinction = 0;
+    request.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
+}
+
+void draw_opaque_surfaces(FrameRequest& request) {
+    request.settings.opaque = OpaqueMatter::Surfaces;
+    // Without faces on the spline there are none.
+    if (draws_faces(request.settings)) request.settings.edges = EdgeEstimator::Cubic;
+}
+
+bool is_mixed(const FrameRequest& request) {
+    return drawn_parts(request).size() > 1;
+}
+
+}  // namespace
 
 std::vector<Effect> settings_effects() {
     std::vector<Effect> rows;
@@ -65,18 +90,11 @@ std::vector<Effect> settings_effects() {
                     .call = "settings.opaque = \"surfaces\"; --opaque surfaces (on by default)",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const bool surfaces = draws_surfaces(r.settings, r.scene, *r.volume);
-                        return surfaces && !keeps_buried(r) ? "all matter is opaque" : "";
+                        if (surfaces && !keeps_buried(r)) return "all matter is opaque";
+                        return is_mixed(r) ? "some matter is opaque" : "";
                     },
-                    .turn_on = [](FrameRequest& r) { r.settings.opaque = OpaqueMatter::Surfaces; },
-                    .base =
-                        [](FrameRequest& r) {
-                            cut_at_faces(r);
-                            r.settings.edges = EdgeEstimator::Cubic;
-                            const glm::dvec3 spacing = r.volume->geometry.spacing();
-                            for (Material& material : r.scene.materials)
-                                material.extinction = 0;
-                            r.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
-                        },
+                    .turn_on = draw_opaque_surfaces,
+                    .base = show_opaque_matter,
                     .passes = {"5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
                     .resources = {"traced rays", "traced entries"},
                     .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
@@ -84,6 +102,28 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
                     .frame_fields = {"iso", "sheets_drawn", "solid", "visible_mask"},
                     .scene_fields = {"noise"}});
+    rows.push_back({.name = "opaque behind translucent",
+                    .help = "surface splats draw the opaque matter, kernels the translucent matter in front of it",
+                    .call = "scene.materials of both kinds, with settings.opaque = \"surfaces\" (on by default)",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return is_mixed(r) ? "some matter is translucent, some opaque" : "";
+                    },
+                    .turn_on =
+                        [](FrameRequest& r) {
+                            draw_opaque_surfaces(r);
+                            r.scene.materials[r.scene.materials.size() - 2] = {{0.3, 0.5, 1}, 0.1};
+                        },
+                    .base =
+                        [](FrameRequest& r) {
+                            show_opaque_matter(r);
+                            draw_opaque_surfaces(r);
+                        },
+                    .passes = {"5_draw_tiles", "6_join_surfaces"},
+                    .resources = {"passed surfaces", "seen surfaces", "ways to surfaces"},
+                    .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
+                                "splat traits", "tiles of splats"},
+                    .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
+                    .frame_fields = {"seen_surfaces", "seen_ways", "surfaces_passed"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",
@@ -134,7 +174,7 @@ std::vector<Effect> settings_effects() {
          .help = "voxels that opaque ones occlude from every side are culled; the picture does not change",
          .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
          .reason = [](const FrameRequest& r) -> std::string {
-             const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keeps_buried(r));
+             const CollectionPlan plan = planned_collection(drawn_parts(r).back());
              if (!plan.buried) return "";
              return fmt::format("voxels at least {} voxels behind an opaque surface are culled",
                                 plan.params.bury_distance);
@@ -145,7 +185,7 @@ std::vector<Effect> settings_effects() {
          .resources = {"buried mask"},
          .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "prepared splats"},
          .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
-         .scene_fields = {"opaque_mask", "bury_distance"}});
+         .scene_fields = {"opaque_mask", "bury_distance", "opaque_count", "opaque_iso"}});
     return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/passes/2_collect_splats.h"
+#include "engine/scene/mixture.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/store/light.h"
 #include "engine/volume/filters.h"
@@ -131,7 +132,10 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
             params.translucent_mask == 0 ? 0 : params.translucent_mask & materials_around(materials, dims, at);
         const std::uint32_t here = 1U << (materials[i] & ~kMissing), own = volume.has_data(i) ? here : 0U;
         splats[i] = static_cast<std::uint8_t>(std::popcount((carried & ~here) | (params.visible_mask & own)));
-        if (plan.buried) opaque[i] = (params.opaque_mask & own) != 0 ? 1U : 0U;
+        if (plan.buried && own != 0) {
+            const std::uint32_t material = material_of(params.opaque_iso, scaled_sample(volume, volume.values[i]));
+            opaque[i] = params.opaque_mask >> material & 1U;
+        }
         if (plan.surfaces && !ends_beside(volume, params, materials, at)) splats[i] = 0;
         if (!plan.clip.any()) continue;
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
@@ -165,8 +169,20 @@ Settings drawn_settings(const FrameRequest& request) {
     return canonical_settings(request.settings, request.scene);
 }
 
-CollectionPlan planned_collection(const FrameRequest& request) {
-    return plan_collection(*request.volume, request.scene, drawn_settings(request), keeps_buried(request));
+std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
+    // Optical depth needs all voxels.
+    auto mixture = request.outputs.tau ? std::nullopt : mixture_of(request.settings, request.scene, *request.volume);
+    if (!mixture) return {request};
+    std::vector<FrameRequest> parts(2, request);
+    parts[0].scene = std::move(mixture->surfaces);
+    parts[1].scene = std::move(mixture->kernels);
+    parts[1].whole = request.scene;
+    return parts;
+}
+
+CollectionPlan planned_collection(const FrameRequest& part) {
+    return plan_collection(*part.volume, part.scene, drawn_settings(part), keeps_buried(part),
+                           part.whole ? &*part.whole : nullptr);
 }
 
 bool keeps_buried(const FrameRequest& request) {
@@ -175,26 +191,52 @@ bool keeps_buried(const FrameRequest& request) {
     return request.outputs.tau || in_kernels;
 }
 
-FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
-                             double reach, const gpu::DeviceProfile& profile) {
+FrameForecast forecast_part(const FrameRequest& part, const CollectionPlan& collection, const SplatCount& splats,
+                            double reach, const gpu::DeviceProfile& profile) {
     FrameForecast out;
     out.profile = &profile;
-    out.settings = drawn_settings(request);
+    out.settings = drawn_settings(part);
     out.collection = collection;
     out.splats = splats;
     out.splats.extent.surfaces = collection.surfaces;
     if (splats.from != SplatCount::From::Frame) {
         // Of surface splats, only those between two values have creases.
         out.splats.extent.creases &= collection.two_values;
-        out.splats.extent.border = collection.surfaces ? faces_with_matter(*request.volume, collection.params) : 0;
+        out.splats.extent.border = collection.surfaces ? faces_with_matter(*part.volume, collection.params) : 0;
     }
-    for (const std::uint32_t payload : payloads_of(request.outputs)) {
+    for (const std::uint32_t payload : payloads_of(part.outputs)) {
         out.draws.push_back(
-            {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
-                                               request.size, payload, out.splats.extent, reach, profile.refines)});
+            {payload_name(payload), plan_frame(*part.volume, part.scene, part.camera, out.settings, part.size, payload,
+                                               out.splats.extent, reach, profile.refines)});
     }
-    out.occluded = occludes_ambient(request.scene);
-    out.shadow_lights = shadow_lights(request.scene).size();
+    out.occluded = occludes_ambient(part.scene);
+    out.shadow_lights = shadow_lights(part.scene).size();
+    out.resources = planned_resources(out);
+    return out;
+}
+
+SplatCount most_splats_of(const FrameRequest&, const CollectionPlan& collection) {
+    return most_splats(collection);
+}
+
+SplatCount count_splats_of(const FrameRequest& part, const CollectionPlan& collection) {
+    return count_splats(*part.volume, collection);
+}
+
+FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& count,
+                             const gpu::DeviceProfile& profile) {
+    std::vector<FrameForecast> parts;
+    for (const FrameRequest& part : drawn_parts(request)) {
+        const CollectionPlan collection = planned_collection(part);
+        parts.push_back(
+            forecast_part(part, collection, count(part, collection), kernel_reach(drawn_settings(part)), profile));
+    }
+    if (parts.size() == 1) return std::move(parts.front());
+    for (FrameForecast& part : parts)
+        for (ForecastDraw& draw : part.draws)
+            draw_mixed(draw.plan);
+    FrameForecast out = std::move(parts.back());
+    out.behind = std::make_shared<const FrameForecast>(std::move(parts.front()));
     out.resources = planned_resources(out);
     return out;
 }

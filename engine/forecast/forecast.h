@@ -1,6 +1,8 @@
 // Forecasts the passes and resources of a request without a device, before anything is allocated.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,10 +56,15 @@ struct FrameForecast {
     bool occluded = false;                   ///< ambient occlusion is on
     std::size_t shadow_lights = 0;           ///< number of lights with shadows
     std::vector<PlannedResource> resources;  ///< all resources of a Renderer during this frame
+    /// Of a mixture: its opaque matter, drawn first; the rest of this forecast is of its translucent matter. Else null.
+    std::shared_ptr<const FrameForecast> behind;
 };
 
 /// The request's canonical_settings().
 Settings drawn_settings(const FrameRequest& request);
+
+/// What is drawn from a splat list of its own: the parts of a mixture, opaque matter first, else the request itself.
+std::vector<FrameRequest> drawn_parts(const FrameRequest& request);
 
 /// Whether buried voxels must be kept.
 bool keeps_buried(const FrameRequest& request);
@@ -65,12 +72,22 @@ bool keeps_buried(const FrameRequest& request);
 /// The resources of `forecast`, from its plans.
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast);
 
-/// The plan of the request's passes 1 and 2.
-CollectionPlan planned_collection(const FrameRequest& request);
+/// The plan of passes 1 and 2 of a part (drawn_parts).
+CollectionPlan planned_collection(const FrameRequest& part);
 
-/// Preconditions: `collection` is planned_collection(request), `reach` is kernel_reach(drawn_settings(request)). Throws
-/// Error like plan_frame().
-FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
-                             double reach, const gpu::DeviceProfile& profile);
+/// Forecasts one part. Preconditions: `collection` is planned_collection(part), `reach` is
+/// kernel_reach(drawn_settings(part)). Throws Error like plan_frame().
+FrameForecast forecast_part(const FrameRequest& part, const CollectionPlan& collection, const SplatCount& splats,
+                            double reach, const gpu::DeviceProfile& profile);
+
+/// Counts the splats of a part.
+using SplatCounter = std::function<SplatCount(const FrameRequest& part, const CollectionPlan& collection)>;
+
+/// most_splats() and count_splats() of a part.
+SplatCount most_splats_of(const FrameRequest& part, const CollectionPlan& collection);
+SplatCount count_splats_of(const FrameRequest& part, const CollectionPlan& collection);
+
+/// Throws Error like plan_frame().
+FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& count, const gpu::DeviceProfile& profile);
 
 }  // namespace edgesplat

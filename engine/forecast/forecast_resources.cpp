@@ -34,33 +34,33 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(buffer(kPlaceholderBlock, sizeof(shader::FrameParams), gpu::Buffer::Place::Host));
 }
 
-void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& out) {
+void add_volume_images(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const CollectionPlan& plan = f.collection;
     const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
-    const auto add_images = [&](const auto& rows) {
-        for (const auto& row : rows)
-            if (row.held(plan)) out.push_back(image(row.text, row.shape(largest.size)));
-    };
-    add_images(volume_image_rows());
-    add_images(field_image_rows());
+    for (const auto& row : volume_image_rows())
+        if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
+            out.push_back(image(row.text, row.shape(largest.size)));
+    // The surfaces' fields are freed before the kernels' are made.
+    for (const auto& row : field_image_rows())
+        if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
+            out.push_back(image(row.text, row.shape(largest.size)));
+}
+
+/// Adds the buffers of a splat list, and the lists of the light that reaches its splats.
+void add_lists(const FrameForecast& f, std::vector<PlannedResource>& out) {
+    const CollectionPlan& plan = f.collection;
+    const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
     for (const CollectionBufferRow& row : collection_buffer_rows())
         if (const std::uint64_t bytes = row.bytes(plan, largest.core_size); bytes > 0)
             out.push_back(buffer(row.text, bytes, gpu::Buffer::Place::Host));
     for (const SplatListRow& row : splat_list_rows())
         if (const std::uint64_t bytes = row.bytes(plan); bytes > 0)
             out.push_back(buffer(row.text, f.splats.extent.count * bytes));
-}
-
-/// Adds the lists of the light that reaches each splat, and the temporary resources for computing them.
-void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
-    const auto add_list = [&](gpu::Buffer SplatLists::*list) {
+    const auto add_light = [&](gpu::Buffer SplatLists::*list) {
         out.push_back(buffer(row_of(list).text, f.splats.extent.count * kLightBytes));
     };
-    if (f.occluded) add_list(&SplatLists::occlusion);
-    if (f.shadow_lights > 0) add_list(&SplatLists::shadows);
-    if (!f.occluded && f.shadow_lights == 0) return;
-    out.push_back(buffer(kLightBlock, sizeof(shader::LightParams), gpu::Buffer::Place::Host));
-    out.back().held = Held::Lighting;
+    if (f.occluded) add_light(&SplatLists::occlusion);
+    if (f.shadow_lights > 0) add_light(&SplatLists::shadows);
 }
 
 /// Adds the targets of the picture's draws, each as large as its largest draw needs.
@@ -91,11 +91,18 @@ void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& 
 
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<PlannedResource> out;
-    add_volume_resources(forecast, out);
-    add_light(forecast, out);
     std::vector<FramePlan> draws;
-    for (const ForecastDraw& draw : forecast.draws)
-        draws.push_back(draw.plan);
+    add_volume_images(forecast, out);
+    for (const FrameForecast* part : {forecast.behind.get(), &forecast}) {
+        if (!part) continue;
+        add_lists(*part, out);
+        for (const ForecastDraw& draw : part->draws)
+            draws.push_back(draw.plan);
+    }
+    if (forecast.occluded || forecast.shadow_lights > 0) {
+        out.push_back(buffer(kLightBlock, sizeof(shader::LightParams), gpu::Buffer::Place::Host));
+        out.back().held = Held::Lighting;
+    }
     add_targets(draws, *forecast.profile, out);
     add_placeholders(out);
     // Uploads are sequential; the largest staging buffer counts.

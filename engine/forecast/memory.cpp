@@ -66,14 +66,10 @@ class Fit {
 
     bool operator()(const FrameRequest& request) const {
         try {
-            const double reach = kernel_reach(drawn_settings(request));
-            const CollectionPlan plan = planned_collection(request);
-            const auto fits = [&](const SplatCount& splats) {
-                return memory_need(*device_, forecast_frame(request, plan, splats, reach, device_->profile()), budget_)
-                    .fits();
+            const auto fits = [&](const SplatCounter& count) {
+                return memory_need(*device_, forecast_frame(request, count, device_->profile()), budget_).fits();
             };
-            if (fits(most_splats(plan))) return true;
-            return fits(count_splats(*request.volume, plan));
+            return fits(most_splats_of) || fits(count_splats_of);
         } catch (const Error&) {
             return false;  // too many sheets
         }

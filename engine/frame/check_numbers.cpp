@@ -10,11 +10,11 @@ namespace edgesplat {
 namespace {
 
 /// "splat 17 of 230 (voxel 3, 4, 5; material 1)".
-std::string named(DeviceSession& session, const LevelStore& level, std::uint32_t number) {
-    const SplatLists& lists = level.splats.lists();
+std::string named(DeviceSession& session, const CollectedSplats& list, std::uint32_t number) {
+    const SplatLists& lists = list.splats.lists();
     const auto splat =
         gpu::read_back<shader::Splat>(session.device(), session.commands(), lists.splats, number, 1).front();
-    const glm::uvec3 dims(level.volume.volume()->geometry.dims);
+    const glm::uvec3 dims(list.volume.volume()->geometry.dims);
     return fmt::format("splat {} of {} (voxel {}, {}, {}; material {})", number, lists.splat_count,
                        splat.voxel % dims.x, splat.voxel / dims.x % dims.y, splat.voxel / dims.x / dims.y,
                        splat.edge >> 28U);
@@ -28,18 +28,18 @@ std::size_t first_bad(std::span<const float> pixels) {
 
 }  // namespace
 
-void check_splats(DeviceSession& session, const LevelStore& level) {
-    const SplatLists& lists = level.splats.lists();
+void check_splats(DeviceSession& session, const CollectedSplats& list) {
+    const SplatLists& lists = list.splats.lists();
     const std::size_t count = lists.splat_count;
     if (!lists.values || count == 0) return;
     const auto values = gpu::read_back<float>(session.device(), session.commands(), lists.values, 0, count);
     const std::size_t bad = first_bad(values);
     if (bad == values.size()) return;
     fail("2_collect_splats: {}: its classified value is {}, expected a finite number",
-         named(session, level, static_cast<std::uint32_t>(bad)), values[bad]);
+         named(session, list, static_cast<std::uint32_t>(bad)), values[bad]);
 }
 
-void PictureDrawer::check_picture(const LevelStore& level) {
+void PictureDrawer::check_picture(const CollectedSplats& list) {
     const auto pixels = [&] { return floats(targets_.pixels(plan_)); };
     const std::size_t bad = first_bad(pixels());
     if (bad == pixels().size()) return;
@@ -51,7 +51,7 @@ void PictureDrawer::check_picture(const LevelStore& level) {
     const std::uint32_t all = plan_.params.splat_count;
     const auto sound = [&](std::uint32_t splats) {
         draw_first(plan_, splats);
-        draw_planned(level);
+        draw_planned(list);
         return first_bad(pixels()) == pixels().size();
     };
     if (!sound(0)) fail("7_resolve: {}, even without splats", where);
@@ -61,7 +61,7 @@ void PictureDrawer::check_picture(const LevelStore& level) {
         (sound(middle) ? good : not_good) = middle;
     }
     draw_first(plan_, all);
-    fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, level, good), where);
+    fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, list, good), where);
 }
 
 }  // namespace edgesplat

@@ -11,6 +11,7 @@
 #include "engine/passes/5_draw_splats.h"
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/6_composite_sheet.h"
+#include "engine/passes/6_join_surfaces.h"
 #include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
@@ -47,7 +48,10 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     // A pixel without votes: negative words in its first texel (surface_pixel.glsl).
     if (!continues && plan.variant.surfaces && !plan.variant.begins)
         commands.fill(targets.tile_sheets, std::bit_cast<std::uint32_t>(-1.0F), 0, picture_bytes(plan));
-    if (!continues && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
+    // In a mixture, surfaces and kernels share the outlines.
+    const bool behind_kernels = plan.variant.mixed && !plan.variant.surfaces;
+    if (!continues && targets.outlines && !behind_kernels) commands.fill(targets.outlines, shader::NO_OUTLINE);
+    if (!continues && behind_kernels) commands.fill(targets.surfaces_passed, 0);
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
     if (!continues && plan.variant.begins)
@@ -137,10 +141,14 @@ void TilePasses::copy_saturated_to_host() {
 void TilePasses::finish(std::uint32_t step) {
     shade(step);
     if (step > 1) {
-        commands_.span("5_refine_pixels", [&] { passes::refine_pixels(commands_, tile_count(plan_), step); });
+        commands_.span("5_refine_pixels",
+                       [&] { passes::refine_pixels(commands_, tile_count(plan_), step, plan_.variant.mixed); });
         copy_saturated_to_host();
+    } else if (plan_.variant.mixed && plan_.variant.surfaces) {
+        commands_.to_host(targets_.output);  // only for checks: kernels are drawn next
     } else if (!how_.part) {
         const auto& p = plan_.params;
+        if (plan_.variant.mixed) commands_.span("6_join_surfaces", [&] { passes::join_surfaces(commands_, p.size); });
         commands_.span("7_resolve", [&] {
             // A pixel on an outline also blends in its neighbour's colour before this pass.
             if (plan_.variant.outlines) {

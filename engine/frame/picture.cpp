@@ -17,30 +17,63 @@ void need_layers(const gpu::Device& device, const Scene& scene, const Settings& 
         fail("sheet_format: {} has {}, expected `tiles`", device.info().name, obstacle);
 }
 
-FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const Camera& camera,
+FramePlan PictureDrawer::plan(const CollectedSplats& list, const Scene& scene, const Camera& camera,
                               const Settings& settings, const glm::ivec2& size, std::uint32_t payload) const {
-    const Volume& volume = *level.volume.volume();
+    const Volume& volume = *list.volume.volume();
+    const SplatLists& splats = list.splats.lists();
     // All parts of a divided picture must agree, whatever their devices.
     const bool refines = session_->profile().refines || options_->exchange != nullptr;
-    FramePlan out = plan_frame(volume, scene, camera, settings, size, payload, level.splats.lists().extent(),
-                               kernel_reach(settings), refines);
-    out.params.chunk_slots = std::min(expected_chunks_, out.params.sheet_count);
-    if (culling_.bricks)
-        cull_bricks(out, level.splats.lists().bricks, {volume.geometry, camera, size, out.variant.antialias});
+    FramePlan out =
+        plan_frame(volume, scene, camera, settings, size, payload, splats.extent(), kernel_reach(settings), refines);
+    out.params.chunk_slots = std::min(expected_chunks_[splats.surfaces ? 1 : 0], out.params.sheet_count);
+    if (culling_.bricks) cull_bricks(out, splats.bricks, {volume.geometry, camera, size, out.variant.antialias});
     return out;
 }
 
-void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
-    plan_ = std::move(plan);
-    level.splats.bind(level.volume);
-    if (options_->check_numbers) check_splats(*session_, level);
-    draw_planned(level);
-    if (options_->check_numbers) check_picture(level);
+void PictureDrawer::draw(const CollectedSplats& list, FramePlan plan) {
+    beside_.reset();
+    drawn_before_ = 0;
+    counts_before_ = {};
+    draw_list(list, std::move(plan));
 }
 
-void PictureDrawer::draw_planned(const LevelStore& level) {
-    level.splats.bind(level.volume);
-    targets_.provide(plan_, level.splats.lists());
+void PictureDrawer::draw_list(const CollectedSplats& list, FramePlan plan) {
+    plan_ = std::move(plan);
+    list.splats.bind(list.volume);
+    if (options_->check_numbers) check_splats(*session_, list);
+    draw_planned(list);
+    examined_ = plan_.splats_examined;
+    if (options_->check_numbers) check_picture(list);
+}
+
+void PictureDrawer::draw_mixed(const CollectedSplats& surfaces, FramePlan of_surfaces, const CollectedSplats& kernels,
+                               FramePlan of_kernels) {
+    edgesplat::draw_mixed(of_surfaces);
+    edgesplat::draw_mixed(of_kernels);
+    drawn_before_ = 0;
+    counts_before_ = {};
+    beside_ = of_kernels;
+    draw_list(surfaces, std::move(of_surfaces));
+    const std::uint32_t drawn = splats_drawn();
+    const PictureCounts counted = counts();
+    const std::uint64_t examined = examined_;
+    std::vector<PassTime> times = std::move(times_);
+    beside_ = std::move(plan_);
+    draw_list(kernels, std::move(of_kernels));
+    drawn_before_ = drawn;
+    counts_before_ = counted;
+    examined_ += examined;
+    add_times(times, times_);
+    times_ = std::move(times);
+}
+
+void PictureDrawer::provide_targets(const CollectedSplats& list) {
+    targets_.provide(plan_, list.splats.lists(), beside_ ? &*beside_ : nullptr);
+}
+
+void PictureDrawer::draw_planned(const CollectedSplats& list) {
+    list.splats.bind(list.volume);
+    provide_targets(list);
     gpu::Commands& commands = session_->commands();
     if (!plan_.variant.tiles) {
         times_ = draw_sheets(commands, plan_, targets_.resources());
@@ -50,12 +83,12 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
         .profile = &session_->profile(), .count = options_->counting, .part = options_->exchange != nullptr};
     if (options_->exchange) return draw_part(how);
     times_.clear();
-    if (draw_front_first(level, how)) return;
+    if (draw_front_first(list, how)) return;
     // Expect as many chunks as the last picture had: an empty one costs as much as waiting once. 0 if the device could
     // not have planned them.
     const auto foresee = [&](const Chunks& chunks) {
         const auto count = std::max(static_cast<std::uint32_t>(chunks.parts.size()), 1U);
-        expected_chunks_ = fit(chunks, plan_.params, count) ? count : 0;
+        expected_chunks_[plan_.variant.surfaces ? 1 : 0] = fit(chunks, plan_.params, count) ? count : 0;
     };
     const bool chunks_foreseen = plan_.params.chunk_slots > 0 && !how.profile->rounds && !plan_.refined;
     if (chunks_foreseen) {
@@ -70,10 +103,10 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
     foresee(chunks);
 }
 
-bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::TileDraw& how) {
-    const auto& collected = level.splats.collected();
+bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::TileDraw& how) {
+    const auto& collected = list.splats.collected();
     if (!session_->profile().front_first || !collected || !(collected->buried || collected->surfaces)) return false;
-    const SplatLists& splats = level.splats.lists();
+    const SplatLists& splats = list.splats.lists();
     const TargetResources& targets = targets_.resources();
     gpu::Commands& commands = session_->commands();
     const auto divided = divide_front(plan_, splats.bricks, culling_.min_splats_to_hide);
@@ -81,12 +114,12 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     const FramePlan whole = plan_;
     draw_bricks(plan_, splats.bricks, divided->front);
     plan_.params.sheets_drawn = static_cast<std::uint32_t>(std::max(divided->sheet - plan_.params.sheet_base, 0));
-    targets_.provide(plan_, splats);
+    provide_targets(list);
     Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, divided->sheet)});
     times_ = commands.span_times();
     if (whole.refined && should_refine(chunks)) {
         plan_ = whole;
-        targets_.provide(plan_, splats);
+        provide_targets(list);
         return false;
     }
     plan_.refined = false;
@@ -107,7 +140,7 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     std::ranges::copy_if(divided->rest, std::back_inserter(shown),
                          [&](std::uint32_t number) { return open.may_show(splats.bricks.bricks()[number].box); });
     draw_bricks(plan_, splats.bricks, shown);
-    targets_.provide(plan_, splats);
+    provide_targets(list);
     chunks = sort_frame(commands, plan_, targets,
                         {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .continues = true});
     add_times(times_, commands.span_times());
@@ -131,7 +164,7 @@ void PictureDrawer::draw_chunks(const Chunks& chunks, const passes::TileDraw& ho
 
 OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest& request, int sheet) {
     gpu::Commands& commands = session_->commands();
-    plan_ = plan(level, request.scene, request.camera, canonical_settings(request.settings, request.scene),
+    plan_ = plan(level.all(), request.scene, request.camera, canonical_settings(request.settings, request.scene),
                  request.size, shader::PAYLOAD_COLOR);
     // A stricter saturation than the picture's, since a plan for another box of splats rounds differently.
     plan_.params.saturation += 0.2F * (1 - plan_.params.saturation);
@@ -167,8 +200,10 @@ PictureCounts PictureDrawer::counts() const {
     const TargetResources& targets = targets_.resources();
     if (plan_.variant.tiles) {
         const auto counts = targets.drawn.mapped<std::uint32_t>(3);
-        return {DrawCounts{.vertices = 0, .fragments = counts[1], .shaded = counts[2]},
-                dirty_share_of_tiles(plan_, targets)};
+        const DrawCounts before = counts_before_.draws.value_or(DrawCounts{});
+        return {
+            DrawCounts{.vertices = 0, .fragments = before.fragments + counts[1], .shaded = before.shaded + counts[2]},
+            dirty_share_of_tiles(plan_, targets)};
     }
     const auto groups = targets.groups.mapped<shader::SheetGroup>(plan_.params.group_count);
     double covered = 0;

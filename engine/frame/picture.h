@@ -28,7 +28,7 @@ struct Culling {
 void need_layers(const gpu::Device& device, const Scene& scene, const Settings& settings);
 
 /// Throws Error naming a splat whose classified value is not finite.
-void check_splats(DeviceSession& session, const LevelStore& level);
+void check_splats(DeviceSession& session, const CollectedSplats& list);
 
 class PictureDrawer {
   public:
@@ -39,19 +39,27 @@ class PictureDrawer {
     /// For a picture drawn in parts from blocks: draws only these sheets, numbered from the eye on.
     void set_slab(std::optional<glm::ivec2> slab) { slab_ = slab; }
 
-    FramePlan plan(const LevelStore& level, const Scene& scene, const Camera& camera, const Settings& settings,
+    FramePlan plan(const CollectedSplats& splats, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
     /// Draws the plan and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the splat if a
     /// number in the splat list or the picture is not finite.
-    void draw(const LevelStore& level, FramePlan plan);
+    void draw(const CollectedSplats& splats, FramePlan plan);
+    /// The same for a mixture: draws surface splats, then kernels in front of the surfaces. Times, counts and numbers
+    /// of splats are of both.
+    void draw_mixed(const CollectedSplats& surfaces, FramePlan of_surfaces, const CollectedSplats& kernels,
+                    FramePlan of_kernels);
     /// The tiles that the sheets in front of `sheet` (numbered from the eye on) leave unsaturated. Frees the targets.
     OpenTiles open_tiles(const LevelStore& level, const FrameRequest& request, int sheet);
 
     /// The plan of the last picture.
     const FramePlan& drawn() const { return plan_; }
+    /// Of the last picture.
+    std::uint64_t splats_examined() const { return examined_; }
     std::span<const glm::vec4> pixels() const { return targets_.pixels(plan_); }
     const std::vector<PassTime>& times() const { return times_; }
-    std::uint32_t splats_drawn() const { return targets_.resources().drawn.mapped<std::uint32_t>(1)[0]; }
+    std::uint32_t splats_drawn() const {
+        return drawn_before_ + targets_.resources().drawn.mapped<std::uint32_t>(1)[0];
+    }
     PictureCounts counts() const;
     /// Sums over all pictures since begin_share().
     const SheetShare& share() const { return share_; }
@@ -60,14 +68,16 @@ class PictureDrawer {
     Targets& targets() { return targets_; }
 
   private:
-    void draw_planned(const LevelStore& level);
+    void draw_list(const CollectedSplats& list, FramePlan plan);
+    void draw_planned(const CollectedSplats& list);
+    void provide_targets(const CollectedSplats& list);
     /// Draws a tiled picture after the sort.
     void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);
     /// Draws a tiled picture in two parts, the second without the bricks that the first one occludes. Returns false
     /// and draws nothing if that saves no time.
-    bool draw_front_first(const LevelStore& level, const passes::TileDraw& how);
+    bool draw_front_first(const CollectedSplats& list, const passes::TileDraw& how);
 
-    void check_picture(const LevelStore& level);
+    void check_picture(const CollectedSplats& list);
 
     /// Draws this process's part of a tiled picture, as options_->exchange assigns it. The first part gets the whole
     /// picture in its targets.
@@ -87,7 +97,12 @@ class PictureDrawer {
     Culling culling_;
     std::optional<glm::ivec2> slab_;
     FramePlan plan_;
-    std::uint32_t expected_chunks_ = 0;  ///< expected number of chunks of the next picture; 0: unknown
+    std::optional<FramePlan> beside_;  ///< the plan of a mixture's other part, while one part is drawn
+    std::uint64_t examined_ = 0;
+    std::uint32_t drawn_before_ = 0;  ///< of the mixture's part that is drawn first, and its counts
+    PictureCounts counts_before_;
+    /// expected number of chunks of the next picture, of kernels and of surface splats; 0: unknown
+    std::array<std::uint32_t, 2> expected_chunks_{};
     std::vector<PassTime> times_;
     SheetShare share_;
 };

@@ -17,6 +17,7 @@ gpu::Specialization constants_of(const DrawVariant& variant, TileDraw how, std::
     constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
     constants.emplace_back(shader::SPEC_GROUP, group);
     constants.emplace_back(shader::SPEC_OUTLINES, variant.outlines ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_MIXED, variant.mixed ? 1U : 0U);
     return constants;
 }
 

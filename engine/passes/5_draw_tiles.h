@@ -40,7 +40,8 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
 
 /// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats; composites the chunk's sheets
 /// behind `output_pixels` (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum); counts saturated pixels in
-/// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished.
+/// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished. In a mixture, kernels end at
+/// `seen_ways`, and surfaces that the sheets pass are composited.
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 /// FrameParams: clears the pixels' votes, or stores that matter begins where their rays enter the volume or what clip
@@ -54,7 +55,7 @@ void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw
 
 /// Writes the colour, or other payload, of the surfaces that the pixels' votes decide; or, as
 /// round 1, only marks the pixels as opaque that are decided up to FrameParams::sheets_drawn. `round`: all pixels of a
-/// step.
+/// step. In a mixture, it also writes `seen_surfaces` and `seen_ways`.
 void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 /// Specialization of 5_trace_faces.comp, and of 5_draw_tiles.comp.

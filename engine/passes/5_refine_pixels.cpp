@@ -2,13 +2,13 @@
 
 namespace edgesplat::passes {
 
-gpu::Specialization refine_constants(std::uint32_t step) {
+gpu::Specialization refine_constants(std::uint32_t step, bool mixed) {
     const std::uint32_t across = shader::TILE / step;
-    return {{shader::SPEC_STEP, step}, {shader::SPEC_GROUP, across * across}};
+    return {{shader::SPEC_STEP, step}, {shader::SPEC_GROUP, across * across}, {shader::SPEC_MIXED, mixed ? 1U : 0U}};
 }
 
-void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step) {
-    commands.dispatch("5_refine_pixels.comp", refine_constants(step), 0, commands.groups_for(tiles, 1));
+void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step, bool mixed) {
+    commands.dispatch("5_refine_pixels.comp", refine_constants(step, mixed), 0, commands.groups_for(tiles, 1));
     commands.barrier();
 }
 

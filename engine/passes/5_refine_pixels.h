@@ -8,9 +8,10 @@ namespace edgesplat::passes {
 /// FrameParams: reads and writes `output_pixels`. Before, the pixels at multiples of `step` are known; `step` >= 2 is a
 /// power of two that divides TILE. Afterwards each pixel at multiples of `step` / 2 is known, or is listed in
 /// `tile_pixels` and counted in `tile_todo`. Resets `tile_closed` to 0.
-void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step);
+/// `mixed`: only pixels whose rays end at one smooth surface, or at none, are interpolated.
+void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step, bool mixed);
 
 /// Specialization of 5_refine_pixels.comp.
-gpu::Specialization refine_constants(std::uint32_t step);
+gpu::Specialization refine_constants(std::uint32_t step, bool mixed);
 
 }  // namespace edgesplat::passes

@@ -210,6 +210,7 @@ bool same_intervals(const CollectionPlan& a, const CollectionPlan& b) {
 bool same_mask(const CollectionPlan& a, const CollectionPlan& b) {
     return same_intervals(a, b) && a.buried == b.buried && a.params.opaque_mask == b.params.opaque_mask &&
            a.params.bury_distance == b.params.bury_distance && a.clip == b.clip &&
+           std::ranges::equal(a.params.opaque_iso, b.params.opaque_iso) &&
            std::ranges::equal(a.params.clip_keep, b.params.clip_keep) &&
            std::ranges::equal(a.params.clip_remove, b.params.clip_remove);
 }
@@ -244,16 +245,11 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     return !stale.lists && !stale.transfer;
 }
 
-namespace {
-
-/// SceneParams::iso and FrameParams::iso.
-void place_iso_values(const Volume& volume, const Scene& scene, float (&iso)[16]) {
+void place_iso_values(const Volume& volume, std::span<const double> values, float (&iso)[16]) {
     std::fill(std::begin(iso), std::end(iso), 3e38F);
-    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
-        iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+    for (std::size_t j = 0; j < values.size(); ++j)
+        iso[j] = static_cast<float>(scaled_iso_value(volume, values[j]));
 }
-
-}  // namespace
 
 std::uint32_t material_of(std::span<const float> iso, float scaled) {
     return static_cast<std::uint32_t>(std::ranges::count_if(iso, [&](float value) { return value <= scaled; }));
@@ -314,11 +310,13 @@ bool may_be_matter(const Volume& volume, const shader::FrameParams& params, cons
 
 }  // namespace
 
-CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const Settings& settings, bool keep_buried) {
+CollectionPlan plan_collection(const Volume& volume, const Scene& drawn, const Settings& settings, bool keep_buried,
+                               const Scene* whole) {
     CollectionPlan plan;
     // Optical depth needs all voxels.
-    plan.surfaces = !keep_buried && draws_surfaces(settings, whole, volume);
-    const Scene& scene = plan.surfaces ? scene_of_bodies(whole) : whole;
+    plan.surfaces = !keep_buried && draws_surfaces(settings, drawn, volume);
+    const Scene& scene = plan.surfaces ? scene_of_bodies(drawn) : drawn;
+    const Scene& opaque = whole ? *whole : scene;
     plan.dims = volume.geometry.dims;
     plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
     plan.edge_field = plan.estimator != EdgeEstimator::Off || needs_normals(scene);
@@ -326,13 +324,16 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
     auto& params = plan.params;
     params.dims = plan.dims;
     params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
-    place_iso_values(volume, scene, params.iso);
+    place_iso_values(volume, scene.iso_values, params.iso);
     plan.transfer = transfer_rows(scene, volume);
     const double radius = uncut_kernel(settings, scene, volume.geometry).radius;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        if (extinctions_of(scene, m).most > 0) params.visible_mask |= 1U << m;
+    params.opaque_count = static_cast<std::uint32_t>(opaque.iso_values.size());
+    place_iso_values(volume, opaque.iso_values, params.opaque_iso);
     int farthest = 0;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        const auto [least, most] = extinctions_of(scene, m);
-        if (most > 0) params.visible_mask |= 1U << m;
+    for (std::size_t m = 0; m < opaque.materials.size(); ++m) {
+        const double least = extinctions_of(opaque, m).least;
         if (!is_opaque(least, volume.geometry)) continue;
         params.opaque_mask |= 1U << m;
         farthest = std::max(farthest, bury_distance(least * shortest_spacing(volume.geometry), radius));
@@ -384,7 +385,7 @@ namespace {
 void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
     auto& p = plan.params;
     plan.variant.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
-    place_iso_values(volume, scene, p.iso);
+    place_iso_values(volume, scene.iso_values, p.iso);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         if (scene.materials[m].extinction > 0) p.visible_mask |= 1U << m;
     p.solid = static_cast<float>(solid_chord(scene, volume.geometry));
@@ -519,6 +520,12 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.saturation =
         payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
     return plan;
+}
+
+void draw_mixed(FramePlan& plan) {
+    plan.variant.mixed = true;
+    // Every pixel's ray ends at its own surface.
+    if (plan.variant.surfaces) plan.refined = plan.may_refine = false;
 }
 
 void shift_rays(FramePlan& plan, const glm::dvec2& offset) {

@@ -68,8 +68,12 @@ struct StaleResults {
 StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wanted);
 
 /// `keep_buried`: buried voxels stay, and kernels draw (the output is optical depth, or the eye is inside opaque matter
-/// that kernels draw).
-CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
+/// that kernels draw). `whole`: all matter, if the scene is the translucent part of a mixture, else null.
+CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried,
+                               const Scene* whole = nullptr);
+
+/// SceneParams::iso and the like: iso-values, scaled; beyond them +3e38.
+void place_iso_values(const Volume& volume, std::span<const double> values, float (&iso)[16]);
 
 /// Material of a scaled sample.
 std::uint32_t material_of(std::span<const float> iso, float scaled);
@@ -137,6 +141,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 /// Writes a scene's clip planes in the shaders' form, relative to the index-space point `origin`.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
                              glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]);
+
+/// Makes it a part of the picture of a mixture: its opaque or its translucent matter.
+void draw_mixed(FramePlan& plan);
 
 /// Shifts the rays of a plan: pixel (x, y) gets the ray through (x + offset.x, y + offset.y), in pixels.
 void shift_rays(FramePlan& plan, const glm::dvec2& offset);

@@ -276,6 +276,16 @@ const std::array kTargetBuffers{
                          [](const FramePlan& p, const Profile& profile) {
                              return if_tiles(p, traced_words(p, tile_entry_pairs(p, profile)) * kWord);
                          }),
+    row<TargetBufferRow>(text("seen surfaces", "(2, y, x) payload, opacity", "5", "5, 6"), &T::seen_surfaces,
+                         &F::seen_surfaces, Place::Device, kNoTexels, kUnbound,
+                         [](const FramePlan& p, const Profile&) { return p.variant.mixed ? 2 * picture_bytes(p) : 0; }),
+    row<TargetBufferRow>(
+        text("ways to surfaces", "(2, y, x) float", "5", "5, 6"), &T::seen_ways, &F::seen_ways, Place::Device,
+        kNoTexels, kUnbound,
+        [](const FramePlan& p, const Profile&) { return p.variant.mixed ? 2 * pixels(p) * kWord : 0; }),
+    row<TargetBufferRow>(text("passed surfaces", "(y, x) uint", "5", "5, 6"), &T::surfaces_passed, &F::surfaces_passed,
+                         Place::Device, kNoTexels, kUnbound,
+                         [](const FramePlan& p, const Profile&) { return p.variant.mixed ? pixels(p) * kWord : 0; }),
 };
 
 gpu::ImageShape texel(gpu::ImageShape kind) {

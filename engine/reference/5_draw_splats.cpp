@@ -186,7 +186,8 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
 }
 
 SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,
-                         const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints)
+                         const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints,
+                         std::span<const double> ends)
     : records_(records),
       selected_(selected),
       field_(field),
@@ -194,6 +195,7 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
       view_(view),
       settings_(settings),
       footprints_(footprints),
+      ends_(ends),
       clip_(index_clip(scene.effects.clip, view.geometry)) {
     rays_.reserve(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
     for (int y = 0; y < view.height; ++y) {
@@ -206,6 +208,14 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
 
 const glm::dvec4& SplatDrawer::ray_of(int x, int y) const {
     return rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
+}
+
+double SplatDrawer::end_of(int x, int y, double ahead) const {
+    if (ends_.empty()) return Slice{}.high;
+    const double end =
+        ends_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)] -
+        ahead;
+    return end < footprints_.kernel().radius ? end : Slice{}.high;
 }
 
 double SplatDrawer::footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p,
@@ -263,9 +273,13 @@ double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<D
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
         return record.extinction(scene_) * ray.w * footprint(splat, record.edge, x, y, p, u, slice);
     }
-    const double share = in_front(s0, footprints_.kernel().radius);
+    // At the end of the ray a kernel is cut at the eye, too.
+    const double end = end_of(x, y, s0);
+    const bool ends = end < Slice{}.high;
+    const double share = ends ? 1 : in_front(s0, footprints_.kernel().radius);
     if (!(share > 0)) return 0;
-    return record.extinction(scene_) * ray.w * share * footprint(splat, record.edge, x, y, p, u, {});
+    const auto slice = ends ? std::optional(Slice{-s0, std::max(end, -s0)}) : std::nullopt;
+    return record.extinction(scene_) * ray.w * share * footprint(splat, record.edge, x, y, p, u, slice);
 }
 
 glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
@@ -285,6 +299,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
         slice = {cut->near / depth_along - s0, cut->far / depth_along - s0};
     }
+    if (const double end = end_of(x, y, s0); end < slice.high) slice = {std::max(slice.low, -s0), std::max(end, -s0)};
     if (clip_.empty()) {
         const double share = tau(splat, x, y, cut);
         return share > 0 ? share * glm::dvec4(faces ? quantity_of(slice) : own, 1) : glm::dvec4(0);

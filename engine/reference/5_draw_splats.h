@@ -43,8 +43,10 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
 /// Draws the sheets of one frame. Referenced objects must outlive it.
 class SplatDrawer {
   public:
+    /// `ends`: where each pixel's ray ends, voxels from the eye; empty: nowhere.
     SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,
-                const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints);
+                const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints,
+                std::span<const double> ends = {});
 
     /// Adds the splats (indices into the records) to `sheet`: (sum of tau * quantity, sum of tau) per pixel. Skips
     /// saturated pixels, whose `closed` is not 0; an empty `closed` skips none. `cut`: only this depth range counts.
@@ -64,6 +66,9 @@ class SplatDrawer {
     /// Integral of the splat's kernel along the ray of pixel (x, y), or along `slice` of it, widened to the pixel.
     double footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                      const std::optional<Slice>& slice) const;
+    /// Where the pixel's ray ends, from the point at distance `ahead` from the eye; infinity unless it cuts a kernel
+    /// there.
+    double end_of(int x, int y, double ahead) const;
     /// Where the ray reaches the voxel's depth, voxels from p.
     double depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const;
     /// Whether the ray's point z lies in the splat's matter.
@@ -80,6 +85,7 @@ class SplatDrawer {
     const View& view_;
     const Settings& settings_;
     const Footprints& footprints_;
+    std::span<const double> ends_;
     IndexClip clip_;
     std::vector<glm::dvec4> rays_;  ///< per pixel: unit direction in index space, mm per voxel along it
 };

@@ -9,6 +9,7 @@
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/pixel_rows.h"
 #include "engine/reference/surfaces.h"
+#include "engine/scene/mixture.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/parallel.h"
@@ -54,10 +55,24 @@ bool is_before(const CarriedEdge& carried, std::size_t voxel) {
 }  // namespace
 
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
+    : PreparedVolume(volume, scene, settings, quantised, scene) {
+    const auto mixture = mixture_of(settings_, scene_, volume);
+    if (!mixture) return;
+    const auto part = [&](const Scene& of) {
+        return std::shared_ptr<const PreparedVolume>(new PreparedVolume(volume, of, settings, quantised, scene));
+    };
+    opaque_ = part(mixture->surfaces);
+    translucent_ = part(mixture->kernels);
+}
+
+PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised,
+                               const Scene& whole)
     : volume_(&volume),
       scene_((validate(scene), scene)),
       settings_((validate(settings), canonical_settings(settings, scene))),
+      lighting_(whole),
       scaled_(scale_scene(scene, volume)),
+      shading_(scale_scene(whole, volume)),
       values_(scaled_field(volume)),
       footprints_(settings_, table_depth(scene_, volume.geometry)) {
     if (settings_.edges == EdgeEstimator::Cubic) {
@@ -103,17 +118,22 @@ void PreparedVolume::replace_edge(std::size_t voxel, int material, const VoxelEd
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
     check_picture_size(width, height);
     View view(camera, volume_->geometry, width, height);
-    std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
-                                                      camera.eye, output == Output::Tau, classified_, carried_);
-    if (output == Output::Color) find_light(records);
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
     // Optical depth needs all voxels.
-    const bool surfaces = surface_scene_ && output != Output::Tau;
+    const bool whole = output == Output::Tau;
+    const PreparedVolume& front = translucent_ && !whole ? *translucent_ : *this;
+    const PreparedVolume* behind = whole ? nullptr : opaque_ ? opaque_.get() : surface_scene_ ? this : nullptr;
+    const std::vector<SplatRecord> surfaces = behind ? behind->lit_surfaces(output) : std::vector<SplatRecord>{};
+    const std::vector<SplatRecord> kernels =
+        behind == this ? std::vector<SplatRecord>{} : front.lit_kernels(camera.eye, output);
     const auto drawn = [&] {
-        if (!surfaces) return draw(records, view, output);
-        const std::vector<glm::dvec4> frame =
-            draw_surfaces(lit_surfaces(output), field(), *surface_scene_, scene_, view, settings_, payload_for(output));
+        if (!behind) return draw(kernels, view, output);
+        const SurfacePicture seen = draw_surfaces(surfaces, field(), *behind->surface_scene_, behind->scene_, view,
+                                                  settings_, payload_for(output));
+        if (behind != this) return front.draw(kernels, view, output, &seen);
+        std::vector<glm::dvec4> frame = composited(seen);
+        if (!seen.outlines.empty()) frame = smoothed(frame, seen.outlines, width, height);
         return resolve(frame, width, height, scene_, output);
     };
     if (samples == 1) return drawn();
@@ -135,8 +155,6 @@ std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
     const std::vector<std::size_t> shadowing = shadow_lights(scene_);
     const bool occludes = occludes_ambient(scene_);
     if (output != Output::Color || (!occludes && shadowing.empty())) return lit;
-    const ScaledScene& bodies = surface_scene_->bodies;
-    const Scene& scene = surface_scene_->scene;
     const VolumeGeometry& geometry = volume_->geometry;
     parallel_for(static_cast<int>(lit.size()), [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
@@ -148,12 +166,12 @@ std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
             if (occludes) {
                 const AmbientOcclusion& occlusion = *scene_.effects.occlusion;
                 const double reach =
-                    ambient_reach_at(point, record.voxel, field(), bodies, scene, geometry, occlusion.radius);
+                    ambient_reach_at(point, record.voxel, field(), shading_, lighting_, geometry, occlusion.radius);
                 record.reach.ambient = 1 - occlusion.strength * (1 - reach);
             }
             for (const std::size_t l : shadowing)
                 record.reach.lights[l] =
-                    light_reach(point, record.voxel, field(), bodies, scene, geometry, scene_.lights[l]);
+                    light_reach(point, record.voxel, field(), shading_, lighting_, geometry, scene_.lights[l]);
         }
     });
     return lit;
@@ -172,7 +190,7 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
             SplatRecord& record = records[static_cast<std::size_t>(i)];
             const auto ambient = [&](bool turned) {
                 const double reach =
-                    ambient_reach(record, f, scaled_, scene_, geometry, band, occlusion->radius, turned);
+                    ambient_reach(record, f, shading_, lighting_, geometry, band, occlusion->radius, turned);
                 return 1 - occlusion->strength * (1 - reach);
             };
             if (occludes_ambient(scene_)) {
@@ -182,13 +200,44 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
             for (const std::size_t l : shadowing) {
                 const SurfacePoint point = lit_point(record, f, geometry, band, scene_.lights[l], clip);
                 record.reach.lights[l] =
-                    light_reach(point, record.voxel, f, scaled_, scene_, geometry, scene_.lights[l]);
+                    light_reach(point, record.voxel, f, shading_, lighting_, geometry, scene_.lights[l]);
             }
         }
     });
 }
 
-Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& view, Output output) const {
+std::vector<SplatRecord> PreparedVolume::lit_kernels(const glm::dvec3& eye, Output output) const {
+    std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
+                                                      eye, output == Output::Tau, classified_, carried_);
+    if (output == Output::Color) find_light(records);
+    return records;
+}
+
+namespace {
+
+/// Where the rays of the pixels end at solid surfaces.
+std::vector<double> ends_of(const SurfacePicture& picture) {
+    std::vector<double> ends;
+    for (const auto& surfaces : picture.pixels) {
+        const auto solid = std::ranges::find_if(surfaces, &SeenSurface::solid);
+        ends.push_back(solid == surfaces.end() ? std::numeric_limits<double>::infinity() : solid->way);
+    }
+    return ends;
+}
+
+/// Composites the surfaces of a pixel that lie before `way`, from number `next` on, behind its sum.
+void pass_surfaces(glm::dvec4& sum, const std::array<SeenSurface, 2>& surfaces, std::size_t& next, double way) {
+    for (; next < surfaces.size() && surfaces[next].way < way; ++next) {
+        const SeenSurface& surface = surfaces[next];
+        const glm::dvec4 value = surface.solid ? surface.value / surface.value.w : surface.value;
+        sum += (1 - sum.w) * value;
+    }
+}
+
+}  // namespace
+
+Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& view, Output output,
+                           const SurfacePicture* behind) const {
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const int width = view.width, height = view.height;
@@ -197,7 +246,8 @@ Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& vie
     const SortedSheets sorted = sort_sheets(selected);
     const bool one_piece = output != Output::Tau && has_single_piece(settings_, scene_, geometry);
     const Footprints drawn(settings_, table_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
-    const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn);
+    const std::vector<double> ends = behind ? ends_of(*behind) : std::vector<double>{};
+    const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn, ends);
 
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<glm::dvec4> frame(pixels, glm::dvec4(0));
@@ -215,12 +265,24 @@ Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& vie
     std::vector<glm::dvec4> sheet(pixels);
     const bool smooth = output == Output::Color && smooths_outlines(settings_, scene_);
     std::vector<std::optional<Outline>> outlines(smooth ? pixels : 0);
+    if (smooth && behind) outlines = behind->outlines;
+    std::vector<std::size_t> passed(behind ? pixels : 0, 0);
+    const glm::dvec3 view_z = glm::transpose(geometry.index_to_world_axes) * view.frame.forward;
+    // Surfaces before anything that this sheet, or one behind it, contains.
+    const auto pass = [&](double sheet_depth) {
+        for (std::size_t at = 0; at < passed.size(); ++at) {
+            const glm::dvec3 u = view.ray(static_cast<int>(at) % width, static_cast<int>(at) / width);
+            pass_surfaces(frame[at], behind->pixels[at], passed[at], sheet_depth / glm::dot(view_z, u));
+        }
+    };
     for (std::size_t s = 0; s < sorted.sheets(); ++s) {
         if (s % kSheetsPerGroup == 0) {
             std::transform(frame.begin(), frame.end(), closed.begin(),
                            [&](const glm::dvec4& v) { return v.w >= settings_.saturation ? 1 : 0; });
         }
         if (sorted.sheet(s).empty()) continue;
+        const double radius = uncut_kernel(settings_, scene_, geometry).radius;
+        pass(thickness * (base + static_cast<double>(s)) - radius * glm::length(view_z));
         std::fill(sheet.begin(), sheet.end(), glm::dvec4(0));
         std::optional<DepthRange> cut;
         if (settings_.sheets == SheetCut::Sliced) {
@@ -230,6 +292,7 @@ Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& vie
         if (smooth) drawer.outline(sorted.sheet(s), frame, outlines, cut);
         composite_sheet(frame, sheet, closed);
     }
+    pass(std::numeric_limits<double>::infinity());
     if (smooth) frame = smoothed(frame, outlines, width, height);
     return resolve(frame, width, height, scene_, output);
 }

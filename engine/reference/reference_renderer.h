@@ -1,6 +1,8 @@
 // The whole frame in double precision, passes 1 to 7. The GPU's pictures are tested against it.
 #pragma once
 
+#include <memory>
+
 #include "engine/image/image.h"
 #include "engine/reference/4_sort_sheets.h"
 #include "engine/reference/5_draw_splats.h"
@@ -47,17 +49,24 @@ class PreparedVolume {
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
+    /// The same for a part of a mixture. `whole`: all its matter, which attenuates light.
+    PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised,
+                   const Scene& whole);
     /// The surface splats, with the light that reaches them if `output` shows it.
     std::vector<SplatRecord> lit_surfaces(Output output) const;
     /// Finds the light that reaches each splat: ambient occlusion and shadows.
     void find_light(std::span<SplatRecord> records) const;
-    /// One picture with one ray per pixel, of the scene's splats.
-    Image draw(std::span<const SplatRecord> records, const View& view, Output output) const;
+    /// The kernels of passes 2 and 3, with the light that reaches them if `output` shows it.
+    std::vector<SplatRecord> lit_kernels(const glm::dvec3& eye, Output output) const;
+    /// One picture with one ray per pixel, of the scene's splats. `behind`: the surfaces at which rays end, else null.
+    Image draw(std::span<const SplatRecord> records, const View& view, Output output,
+               const SurfacePicture* behind = nullptr) const;
 
     const Volume* volume_;
     Scene scene_;
     Settings settings_;
-    ScaledScene scaled_;
+    Scene lighting_;                ///< all matter, which attenuates light
+    ScaledScene scaled_, shading_;  ///< of both scenes
     std::vector<float> values_, coefficients_;
     std::vector<VoxelEdge> edges_;
     std::vector<CarriedEdge> carried_;
@@ -65,6 +74,7 @@ class PreparedVolume {
     std::vector<SplatRecord> surfaces_;
     std::vector<double> classified_;
     Footprints footprints_;
+    std::shared_ptr<const PreparedVolume> opaque_, translucent_;  ///< the parts of a mixture, else null
 };
 
 /// All passes at once.

@@ -425,9 +425,8 @@ std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& 
     return records;
 }
 
-std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field,
-                                      const SurfaceScene& surfaces, const Scene& scene, const View& view,
-                                      const Settings& settings, Payload payload) {
+SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& field, const SurfaceScene& surfaces,
+                             const Scene& scene, const View& view, const Settings& settings, Payload payload) {
     const IndexClip clip = index_clip(scene.effects.clip, view.geometry);
     const double thickness = sheet_thickness(view, settings);
     std::vector<DrawnSplat> splats;
@@ -466,9 +465,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
             seen.reach.lights[shadowing[k]] = geometry::lights_at(votes)[static_cast<int>(k)];
         return seen;
     };
-    std::vector<glm::dvec4> frame(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height),
-                                  glm::dvec4(0));
-    std::vector<std::optional<Outline>> outlines(smooth ? frame.size() : 0);
+    SurfacePicture picture;
+    picture.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+    picture.outlines.resize(smooth ? picture.pixels.size() : 0);
     parallel_for(view.height, [&](int begin, int end) {
         struct Pixel {
             geometry::SurfacePair pair = geometry::no_surfaces();
@@ -547,7 +546,8 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                 for (int k = 0; k < 2; ++k)
                     if (!geometry::wins(pixel.pair.front)) geometry::refuse_front(pixel.pair);
                 const dvec3 u = view.ray(x, y);
-                glm::dvec4 sum(0);
+                const std::size_t at = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+                std::size_t kept = 0;
                 for (const geometry::SurfaceVotes& votes : {pixel.pair.front, pixel.pair.behind}) {
                     if (!geometry::wins(votes)) continue;
                     const Seen seen = seen_by(votes, view.eye_index + geometry::way_to(votes) * u);
@@ -556,14 +556,22 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                                              ? scene.materials[seen.material].extinction * chord *
                                                    glm::length(view.geometry.index_to_world_axes * u)
                                              : kNowhere;
-                    const double share = (1 - sum.w) * (1 - std::exp(-depth));
-                    sum += share * glm::dvec4(payload_at(votes, seen, scene, view, u, payload), 1);
+                    picture.pixels[at][kept++] = {
+                        (1 - std::exp(-depth)) * glm::dvec4(payload_at(votes, seen, scene, view, u, payload), 1),
+                        geometry::way_to(votes), chord >= solid};
                 }
-                frame[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = sum;
-                if (smooth) outlines[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = pixel.outline;
+                if (smooth) picture.outlines[at] = pixel.outline;
             }
     });
-    return smooth ? smoothed(frame, outlines, view.width, view.height) : frame;
+    return picture;
+}
+
+std::vector<glm::dvec4> composited(const SurfacePicture& picture) {
+    std::vector<glm::dvec4> frame;
+    frame.reserve(picture.pixels.size());
+    for (const auto& [front, behind] : picture.pixels)
+        frame.push_back(front.value + (1 - front.value.w) * behind.value);
+    return frame;
 }
 
 }  // namespace edgesplat::reference

@@ -2,6 +2,9 @@
 // Lengths are voxels, index space.
 #pragma once
 
+#include <array>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,9 +32,22 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& bodies, const std::
 std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool quantised);
 
-/// One picture with one ray per pixel: premultiplied payload and opacity, row by row.
-std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field,
-                                      const SurfaceScene& surfaces, const Scene& scene, const View& view,
-                                      const Settings& settings, Payload payload);
+/// A surface that a ray meets.
+struct SeenSurface {
+    glm::dvec4 value{0};                                   ///< payload times opacity, opacity
+    double way = std::numeric_limits<double>::infinity();  ///< from the eye along the ray, voxels
+    bool solid = false;                                    ///< nothing is seen behind it
+};
+
+/// A picture of surface splats with one ray per pixel, row by row.
+struct SurfacePicture {
+    std::vector<std::array<SeenSurface, 2>> pixels;  ///< the nearer surface first
+    std::vector<std::optional<Outline>> outlines;    ///< empty unless outlines are smoothed
+};
+SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& field, const SurfaceScene& surfaces,
+                             const Scene& scene, const View& view, const Settings& settings, Payload payload);
+
+/// Premultiplied payload and opacity of its pixels, before outlines are smoothed.
+std::vector<glm::dvec4> composited(const SurfacePicture& picture);
 
 }  // namespace edgesplat::reference

@@ -30,7 +30,7 @@ std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameReq
     wanted.blocks = true;
     const auto fits = [&](std::uint64_t splats) {
         const SplatCount count{SplatCount::From::Voxels, {splats, glm::ivec3(0), request.volume->geometry.dims - 1}};
-        return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
+        return memory_need(session_->device(), forecast_part(request, wanted, count, reach, session_->profile()),
                            options_->memory_budget)
             .fits();
     };

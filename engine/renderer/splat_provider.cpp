@@ -41,14 +41,14 @@ bool SplatProvider::take_changes(const std::shared_ptr<const Volume>& next) {
 
 void SplatProvider::use_level(int level) {
     if (!shown_.volume.hold(levels_.at(level), level)) return;
-    shown_.splats.drop();
+    shown_.drop_splats();
     rays_->reset();
     checked_.clear();
 }
 
 void SplatProvider::hold_in_blocks(bool blocks) {
     if (!shown_.volume.hold_in_blocks(blocks)) return;
-    shown_.splats.drop();
+    shown_.drop_splats();
     rays_->reset();
 }
 
@@ -65,17 +65,21 @@ bool SplatProvider::provide_volume(bool coefficients) {
 }
 
 std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& wanted) const {
-    const auto& held = shown_.splats.collected();
-    if (shown_.volume.changed() || !held || stale_results(*held, wanted).lists) return std::nullopt;
-    return SplatCount{SplatCount::From::Frame, shown_.splats.lists().extent()};
+    if (shown_.volume.changed()) return std::nullopt;
+    for (const SplatStore* list : {&shown_.splats, &shown_.surfaces})
+        if (list->collected() && !stale_results(*list->collected(), wanted).lists)
+            return SplatCount{SplatCount::From::Frame, list->lists().extent()};
+    return std::nullopt;
 }
 
 std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& request) {
-    const double reach = kernel_reach(drawn_settings(request));
-    const CollectionPlan wanted = planned_collection(request);
-    const auto known = collected_splats(wanted);
-    const SplatCount splats = known.value_or(most_splats(wanted));
-    FrameForecast forecast = forecast_frame(request, wanted, splats, reach, session_->profile());
+    bool known = true;
+    const auto count_at_once = [&](const FrameRequest&, const CollectionPlan& wanted) {
+        const auto collected = collected_splats(wanted);
+        known = known && collected;
+        return collected.value_or(most_splats(wanted));
+    };
+    FrameForecast forecast = forecast_frame(request, count_at_once, session_->profile());
     std::vector<std::pair<std::string, std::uint64_t>> needed;
     for (const PlannedResource& resource : forecast.resources)
         needed.emplace_back(resource.text.name, resource.bytes);
@@ -83,7 +87,7 @@ std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& re
     MemoryNeed need = memory_need(session_->device(), forecast, options_->memory_budget);
     // The upper bound by the number of voxels is too high for most volumes; exact counting takes longer.
     if (!need.fits() && !known) {
-        forecast = forecast_frame(request, wanted, count_splats(*request.volume, wanted), reach, session_->profile());
+        forecast = forecast_frame(request, count_splats_of, session_->profile());
         need = memory_need(session_->device(), forecast, options_->memory_budget);
     }
     session_->pipelines().create_ahead(pipelines_of(request, forecast));
@@ -142,8 +146,10 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
 
 double SplatProvider::provide_undivided(const FrameRequest& request) {
     const auto start = Clock::now();
-    const Settings settings = drawn_settings(request);
-    const bool found = shown_.provide(request.scene, settings, keeps_buried(request), cost_);
+    std::vector<CollectionPlan> plans;
+    std::ranges::transform(drawn_parts(request), std::back_inserter(plans), planned_collection);
+    const CollectionPlan* opaque = plans.size() > 1 ? &plans.front() : nullptr;
+    const bool found = shown_.provide(plans.back(), opaque, request.scene, cost_);
     return found ? milliseconds_since(start) : 0;
 }
 

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 
 #include "engine/scene/aov.h"
 #include "engine/scene/camera.h"
@@ -20,6 +21,8 @@ struct FrameRequest {
     Settings settings;
     glm::ivec2 size{512};
     AovRequest outputs;
+    /// All matter, if the request is of the translucent part of a mixture. Rays end at the opaque one.
+    std::optional<Scene> whole{};
 };
 
 }  // namespace edgesplat

@@ -2,7 +2,7 @@
 
 namespace edgesplat {
 
-Matter::Matter(const Scene& scene) : transfer(scene.transfer), clip(scene.effects.clip) {
+Matter::Matter(const Scene& scene) : iso_values(scene.iso_values), transfer(scene.transfer), clip(scene.effects.clip) {
     for (const Material& material : scene.materials)
         extinction.push_back(material.extinction);
     for (TransferPoint& point : transfer)

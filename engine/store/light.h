@@ -9,6 +9,7 @@ namespace edgesplat {
 
 /// The matter that attenuates light: the part of a scene that can change without a new collection of splats.
 struct Matter {
+    std::vector<double> iso_values;
     std::vector<double> extinction;       ///< of each material, per mm
     std::vector<TransferPoint> transfer;  ///< colours are reset
     Clip clip;

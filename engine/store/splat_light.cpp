@@ -17,15 +17,16 @@ gpu::Buffer light_list(const gpu::Device& device, gpu::Buffer SplatLists::*list,
 
 /// Inputs of passes 2b and 2c. The caller sets what only one of them reads.
 struct LightInputs {
-    LightInputs(const SplatLists& lists, const VolumeGeometry& geometry, const Matter& matter,
-                const gpu::Buffer& reach) {
+    LightInputs(const SplatLists& lists, const Volume& volume, const Matter& matter, const gpu::Buffer& reach) {
+        const VolumeGeometry& geometry = volume.geometry;
+        place_iso_values(volume, matter.iso_values, params.iso);
         params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(geometry.index_to_world_axes)));
         std::ranges::transform(matter.extinction, std::begin(params.extinction),
                                [](double extinction) { return static_cast<float>(extinction); });
         params.splat_count = static_cast<std::uint32_t>(lists.splat_count);
         params.reach = reach.address();
         variant = {.splat_count = lists.splat_count,
-                   .iso_count = lists.scene.mapped<shader::SceneParams>(1)[0].iso_count,
+                   .iso_count = static_cast<std::uint32_t>(matter.iso_values.size()),
                    .clip = place_clip(matter.clip, geometry, glm::dvec3(0), params.clip_keep, params.clip_remove),
                    .surfaces = lists.surfaces,
                    .transfer = !matter.transfer.empty()};
@@ -48,12 +49,6 @@ void run_light(DeviceSession& session, const char* name, const LightInputs& in,
 }  // namespace
 
 bool SplatStore::light(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
-    const bool lit = occludes_ambient(scene) || !shadow_lights(scene).empty();
-    if (lit && lists_.surfaces) return light_matter(volume, scene_of_bodies(scene), cost);
-    return light_matter(volume, scene, cost);
-}
-
-bool SplatStore::light_matter(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
     const bool occluded = occlude(volume, scene, cost);
     return cast_shadows(volume, scene, cost) || occluded;
 }
@@ -70,7 +65,7 @@ bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCos
     lists_.occlusion = {};
     bind(volume);
     lists_.occlusion = light_list(session_->device(), &SplatLists::occlusion, lists_.splat_count);
-    LightInputs in(lists_, volume.volume()->geometry, plan.matter, lists_.occlusion);
+    LightInputs in(lists_, *volume.volume(), plan.matter, lists_.occlusion);
     in.params.radius = static_cast<float>(plan.radius);
     run_light(*session_, "2b_occlude_ambient", in, passes::occlude_ambient, cost);
     occluded_ = plan;
@@ -90,7 +85,7 @@ bool SplatStore::cast_shadows(const VolumeStore& volume, const Scene& scene, Set
     bind(volume);
     lists_.shadows = light_list(session_->device(), &SplatLists::shadows, lists_.splat_count);
     const VolumeGeometry& geometry = volume.volume()->geometry;
-    LightInputs in(lists_, geometry, plan.matter, lists_.shadows);
+    LightInputs in(lists_, *volume.volume(), plan.matter, lists_.shadows);
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
     for (const Light& light : plan.lights) {
         const bool far = light.kind == Light::Kind::Directional;

@@ -75,7 +75,6 @@ bool SplatStore::collect(VolumeStore& volume, const CollectionPlan& wanted, Setu
         collect_changes(volume, cost);
     else
         recollect(volume, wanted, volume.changed() || !holds_fields(wanted) ? StaleResults{} : stale, cost);
-    volume.forget_changes();
     return true;
 }
 
@@ -298,7 +297,7 @@ void SplatStore::mark_block(const CollectionPlan& plan, const CollectionBlock& b
     if (!plan.buried) return;
     gpu::Commands& commands = session_->commands();
     commands.span("1a_mark_buried",
-                  [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
+                  [&] { passes::mark_buried(commands, block.size, plan.params.opaque_count, plan.clip); });
 }
 
 passes::CollectSplats SplatStore::block_inputs(const CollectionPlan& plan, const CollectionBlock& block) const {
@@ -416,12 +415,28 @@ std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& pl
     return out;
 }
 
-bool LevelStore::provide(const Scene& scene, const Settings& settings, bool keep_buried, SetupCost& cost) {
-    const bool uploaded = volume.provide();
-    const bool collected =
-        splats.collect(volume, plan_collection(*volume.volume(), scene, settings, keep_buried), cost);
-    const bool lit = splats.light(volume, scene, cost);
-    return uploaded || collected || lit;
+void LevelStore::drop_splats() {
+    splats.drop();
+    surfaces.drop();
+}
+
+bool LevelStore::provide(const CollectionPlan& plan, const CollectionPlan* opaque, const Scene& scene,
+                         SetupCost& cost) {
+    bool ran = volume.provide();
+    const auto collect = [&](SplatStore& list, const CollectionPlan& wanted) {
+        const bool collected = list.collect(volume, wanted, cost);
+        const bool lit = list.light(volume, scene, cost);
+        ran = ran || collected || lit;
+    };
+    if (opaque) {
+        collect(surfaces, *opaque);
+        surfaces.release_fields();
+    } else {
+        surfaces.drop();
+    }
+    collect(splats, plan);
+    volume.forget_changes();
+    return ran;
 }
 
 }  // namespace edgesplat

@@ -61,7 +61,8 @@ class SplatStore {
     bool collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
     /// Replaces the transfer function by that of a plan for the same lists.
     void classify(const CollectionPlan& wanted);
-    /// Runs passes 2b and 2c if the scene needs them and their plans changed. Returns whether any ran.
+    /// Runs passes 2b and 2c if the scene needs them and their plans changed: light among all of the scene's matter,
+    /// also such that the splats do not show. Returns whether any ran.
     bool light(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
 
     /// For a volume in blocks: starts an empty list; blocks will be read from `source`.
@@ -74,6 +75,11 @@ class SplatStore {
     std::uint64_t blocks_held() const;
     /// Invalidates occlusion and shadows; call before splats are added.
     void forget_light();
+    /// Frees the images from which the list was collected. A change of the list then starts anew.
+    void release_fields() {
+        lists_.edges = {};
+        lists_.buried = {};
+    }
     /// Runs passes 1 and 2 for a block while block `after` is read. Without room, blocks that are not `needed`
     /// (ascending) are dropped. Returns false if the list would still exceed `most_splats`.
     bool add_block(VolumeStore& volume, std::size_t block, std::optional<std::size_t> after,
@@ -89,8 +95,6 @@ class SplatStore {
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 
   private:
-    /// light() of the matter that the splats show.
-    bool light_matter(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     bool cast_shadows(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     void recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale, SetupCost& cost);
@@ -140,16 +144,29 @@ class SplatStore {
     std::optional<ResidentBlocks> residence_;  ///< set if the volume is in blocks
 };
 
+/// Splats, and the volume from which they were collected.
+struct CollectedSplats {
+    const VolumeStore& volume;
+    const SplatStore& splats;
+};
+
 /// One resolution of a volume, and the splats collected from it.
 struct LevelStore {
-    explicit LevelStore(DeviceSession& session) : volume(session), splats(session) {}
+    explicit LevelStore(DeviceSession& session) : volume(session), splats(session), surfaces(session) {}
 
-    /// For a volume as a whole: runs those of passes 1 to 2c that the scene needs and whose inputs changed. Returns
-    /// whether any ran.
-    bool provide(const Scene& scene, const Settings& settings, bool keep_buried, SetupCost& cost);
+    CollectedSplats all() const { return {volume, splats}; }
+    /// Of a mixture: the opaque matter. all() is its translucent matter.
+    CollectedSplats opaque() const { return {volume, surfaces}; }
+    /// Frees all splats.
+    void drop_splats();
+
+    /// For a volume as a whole: runs those of passes 1 to 2c that a picture needs and whose inputs changed. `opaque`:
+    /// of a mixture's opaque matter, else null. `scene`: all matter, which attenuates light. Returns whether any ran.
+    bool provide(const CollectionPlan& plan, const CollectionPlan* opaque, const Scene& scene, SetupCost& cost);
 
     VolumeStore volume;
     SplatStore splats;
+    SplatStore surfaces;  ///< only of a mixture
 };
 
 }  // namespace edgesplat

@@ -15,6 +15,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 
+#define ISO_VALUES params.scene.opaque_iso
 #include "shaders/common/material.glsl"
 #define CLIP_PARAMS params.scene
 #include "shaders/common/clip.glsl"

@@ -1,5 +1,6 @@
 // Extinction of the volume's matter for light. The including shader declares `volume`, `params.scene`, LightParams as
 // `light.at`, TRANSFER, CLIP_KEEP and CLIP_REMOVE.
+#define ISO_VALUES light.at.iso
 #include "shaders/common/transfer.glsl"
 #include "shaders/common/material.glsl"
 #include "shaders/common/clip.glsl"

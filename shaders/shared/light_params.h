@@ -11,7 +11,8 @@ EDGESPLAT_CONSTANT float OCCLUSION_LIFT = 1.25f;    // voxels; from here, the ne
 struct LightParams {
     mat3 normal_to_world;   // S^-T
     float radius;           // mm, of ambient occlusion
-    float extinction[16];   // of each material, per mm
+    float iso[16];          // of the matter that attenuates light, scaled, ascending; beyond them: +3e38
+    float extinction[16];   // of each of its materials, per mm
     vec4 clip_keep[8];      // normal (unit) and offset, index space: values above 0 are beyond the plane
     vec4 clip_remove[8];
     vec4 light;             // of shadows, index space: direction towards the light (w = 0) or its place (w = 1)
@@ -23,6 +24,6 @@ struct LightParams {
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::LightParams) == 392);
+static_assert(sizeof(edgesplat::shader::LightParams) == 456);
 #endif
 #endif

@@ -111,6 +111,7 @@ EDGESPLAT_CONSTANT uint REFINE_PIXELS = 33554432u;  // larger pictures may have 
 EDGESPLAT_CONSTANT uint MARK_PIXELS = 16777216u;   // in larger pictures, marks for every single pixel would take too much memory
 EDGESPLAT_CONSTANT uint REFINE_STEP = 4u;
 EDGESPLAT_CONSTANT float REFINE_TOLERANCE = 1.0f / 255.0f;
+EDGESPLAT_CONSTANT float REFINE_WAY = 0.25f;  // voxels: the same for second differences of where surfaces end the rays
 // Outlines (outline.glsl).
 EDGESPLAT_CONSTANT uint NO_OUTLINE = 0xffffffffu;
 EDGESPLAT_CONSTANT float OUTLINE_FAR2 = 16.0f;  // voxels^2 from the splat's voxel: further away, the face does not predict its outline
@@ -170,7 +171,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_NO_DATA, 44u)      /* 1: rays meet samples without data where matter would be drawn */ \
     X(SPEC_LABELS, 45u)       /* every label has its own colour: LABELS_OF_MASK or LABELS_OF_SCAN; 0: none have */ \
     X(SPEC_SURFACES, 46u)     /* 1: splats are surface splats */ \
-    X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */
+    X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */ \
+    X(SPEC_MIXED, 48u)        /* 1: surface splats draw opaque matter, kernels translucent matter in front of it */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -9,7 +9,7 @@ struct SceneParams {
     uint iso_count;       // 1..15
     float iso[16];        // J_j, scaled, ascending; beyond iso_count: +3e38
     uint visible_mask;    // bit m: material m has extinction > 0
-    uint opaque_mask;     // bit m: material m occludes everything bury_distance voxels behind its surface
+    uint opaque_mask;     // bit m: material m of opaque_iso occludes everything bury_distance voxels behind its surface
     int bury_distance;    // voxels
     float band;           // edges further away are ignored, voxels
     Address run_offsets;  // (runs) uint: number of splats of each run, then its write position
@@ -33,6 +33,8 @@ struct SceneParams {
     uint edge_count_at;      // index in run_offsets of the number of splats with an edge
     uint brick_count;        // 0: all bricks
     float noise;             // standard deviation of the samples' noise, scaled; only with surface splats
+    uint opaque_count;       // number of the following values
+    float opaque_iso[16];    // like iso, of all matter: kernels of a mixture are collected for its translucent matter only
 };
 
 /// One splat as collected: 12 bytes.
@@ -52,7 +54,7 @@ EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 488);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 556);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -15,6 +15,8 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
+const uint MIXED = 0u;
+const float ray_end = 0.0;
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;

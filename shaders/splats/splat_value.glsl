@@ -1,6 +1,6 @@
 // One splat in one pixel: (tau * colour, tau) with tau the optical depth of its kernel along the pixel's ray.
 // docs/method.md, pass 5; design (8). The including shader declares the uniform block `params.frame`, the constants of
-// the draw, and the results of shaders/splats/splat_inputs.glsl as variables: with faces `face_form`; with antialias
+// the draw, `ray_end` and the results of shaders/splats/splat_inputs.glsl as variables: with faces `face_form`; with antialias
 // `pixels`, the offset from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
@@ -225,6 +225,12 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     } else if (CLIP_KEEP + CLIP_REMOVE == 0u) {
         // Only the part of the kernel in front of the eye counts.
         in_front = smoothstep(-params.frame.support, params.frame.support, ahead);
+    }
+    if (MIXED == 1u) {
+        // A kernel at the end of the ray is cut at the eye, too, so that nothing is left if the ray ends there.
+        bool ends = ray_end - ahead < KERNEL_R;
+        slice = Slice(ends ? -ahead : slice.low, ends ? ray_end - ahead : slice.high);
+        in_front = ends ? 1.0 : in_front;
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, ahead, slice, mm);
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;

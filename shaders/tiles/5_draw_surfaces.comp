@@ -113,7 +113,7 @@ void main() {
         float way_length = length(way);
         vec3 u = way / way_length;
         RayParts parts = ray_parts(u);
-        SheetWays ways = sheet_ways(u);
+        SheetWays ways = sheet_ways(u, votes_before());
         SeenRay traced;
         if (TRACED == 1u) traced = load_seen_ray(held);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));

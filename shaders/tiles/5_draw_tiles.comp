@@ -31,6 +31,7 @@ layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
+layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
@@ -60,6 +61,7 @@ uvec2 number_material;
 vec4 filtered;
 FaceForm face_form;
 SelectedFootprint selected_footprint;
+float ray_end;  // where the ray ends at a surface, from the eye; only with MIXED
 #define CLIP_PARAMS params.frame
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/splats/prepared_splat.glsl"
@@ -69,6 +71,8 @@ SelectedFootprint selected_footprint;
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
+#include "shaders/tiles/sheet_ways.glsl"
+#include "shaders/tiles/seen_surfaces.glsl"
 
 // A saturated pixel does not change any more.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
@@ -110,8 +114,15 @@ void main() {
         if (FACES) volume_piece = piece_in_volume(u);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
-        uint outline = NO_OUTLINE;
+        uint outline = NO_OUTLINE, number = uint(held.y * size.x + held.x);
         if (OUTLINES == 1u) outline = load_outline(held.y * size.x + held.x);
+        SheetWays sheets;
+        SeenWays surfaces;
+        if (MIXED == 1u) {
+            sheets = sheet_ways(u, params.frame.support);
+            surfaces = seen_ways(number);
+            ray_end = surfaces.last;
+        }
         uint current = load_entry(at).y;
         if (ROUNDS == 1u) {
             bool same = continued && load_entry(at - (continued ? 1 : 0)).y == current;
@@ -133,6 +144,14 @@ void main() {
                 open = ended ? still_open : open;
                 sheet_sum = ended ? vec4(0.0) : sheet_sum;
                 current = sheet;
+                if (MIXED == 1u) {
+                    float way = way_before(sheets, sheet);
+                    bool passes = open && surfaces.next < way;
+                    IF_ANY(passes) {
+                        if (passes) pass_surfaces(sum, surfaces, number, way);
+                        open = open && sum.a < params.frame.saturation;
+                    }
+                }
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], sheet);
@@ -179,6 +198,7 @@ void main() {
         IF_ANY(was_open) {
             store_pixel(held.y * size.x + held.x, sum);
             if (OUTLINES == 1u) store_outline(held.y * size.x + held.x, outline);
+            if (MIXED == 1u && was_open) UintsRef(params.frame.surfaces_passed).at[number] = surfaces.passed;
         }
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);

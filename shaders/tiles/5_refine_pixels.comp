@@ -9,11 +9,13 @@
 layout(local_size_x_id = SPEC_GROUP) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
+layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 STORED_WORDS(BIND_TILE_PIXELS, pixels, tile_pixels, load_listed, store_listed)
 #include "shaders/tiles/pixel_in_tile.glsl"
+#include "shaders/tiles/seen_surfaces.glsl"
 
 shared uvec2 rough;  // cells that are listed, one bit each: the lists do not depend on the order of invocations
 
@@ -25,6 +27,25 @@ float largest(vec4 v) { return max(max(v.r, v.g), max(v.b, v.a)); }
 vec4 between(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - (a + d)) / 16.0; }
 
 void keep(ivec2 pixel, vec4 value) { store_pixel(pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
+
+// Whether the rays of a cell all end at one smooth surface, or none at any.
+bool ends_smoothly(ivec2 first) {
+    float ways[3][3];
+    bool all_end = true, none_ends = true;
+    for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 3; ++x) {
+            ivec2 pixel = first + int(STEP / 2u) * ivec2(x, y);
+            uint number = uint(pixel.y * params.frame.size.x + pixel.x);
+            ways[y][x] = seen_way(number, 0u);
+            none_ends = none_ends && ways[y][x] >= NEVER_SEEN;
+            all_end = all_end && seen_surface(number, 0u).a >= 1.0;
+        }
+    }
+    float bend = 0.0;
+    for (int i = 0; i < 3; ++i)
+        bend = max(bend, max(abs(ways[i][0] - 2.0 * ways[i][1] + ways[i][2]), abs(ways[0][i] - 2.0 * ways[1][i] + ways[2][i])));
+    return none_ends || (all_end && bend <= REFINE_WAY);
+}
 
 void main() {
     uint tile = group_number();
@@ -54,6 +75,8 @@ void main() {
     // between samples.
     float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
     bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
+
+    if (MIXED == 1u && smooth_here) smooth_here = ends_smoothly(first);
 
     const int half_step = int(STEP / 2u);
     bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;

@@ -13,6 +13,7 @@ layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
 const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, ANTIALIAS = 0u, NARROW = 1u, TRACED = 0u, NODES = 6u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -29,6 +30,7 @@ ivec3 dims;
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
+#include "shaders/tiles/seen_surfaces.glsl"
 
 // Payload and opacity.
 vec4 seen_of(SurfaceVotes votes, vec3 u) {
@@ -81,17 +83,25 @@ void main() {
     IF_ANY(some && marks) {
         SurfacePair pair = load_votes(pixel);
         bool open = load_pixel(number).a == 0.0;
-        closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u), params.frame.sheets_drawn), params.frame.solid);
+        closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u, votes_before()), params.frame.sheets_drawn), params.frame.solid);
         if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
+    }
+    if (MIXED == 1u && !marks && inside) {
+        for (uint k = 0u; k < SEEN_SURFACES; ++k) keep_seen(number, k, vec4(0.0), NEVER_SEEN);
     }
     IF_ANY(some && !marks) {
         bool shades = some && !marks;
         vec4 seen = vec4(0.0);
+        uint kept = 0u;
         for (int k = 0; k < 2; ++k) {
             bool there = shades && wins(front);
             IF_ANY(there) {
                 vec4 next = seen_of(front, u);
                 if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
+                if (MIXED == 1u && there) {
+                    if (mean_chord(front) >= params.frame.solid) next.a = 1.0;
+                    keep_seen(number, kept++, next.a * vec4(next.rgb, 1.0), way_to(front));
+                }
             }
             // Also surfaces that no later splat decided.
             shades = shades && k == 0 && !(there && mean_chord(front) >= params.frame.solid);

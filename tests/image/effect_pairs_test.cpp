@@ -51,7 +51,12 @@ FrameRequest with_effects(const EffectSet& effects) {
 /// Effects that another one switches off, and why.
 bool excludes(std::string_view off, std::string_view by) {
     // Optical depth sums all matter on a ray, buried or not.
-    if (off == "buried voxels") return by == "output tau";
+    if (off == "buried voxels") return by == "output tau" || by == "surface splats";
+    // Kernels draw these, and optical depth.
+    const bool surfaces = off == "surface splats" || off == "opaque behind translucent";
+    if (surfaces && (by == "antialias" || by == "transfer function" || by == "sliced sheets" || by == "output tau" ||
+                     by == "footprint table"))
+        return true;
     // Slices are integrated.
     return off == "footprint table" && by == "sliced sheets";
 }
@@ -116,7 +121,7 @@ void expect_agreement(const EffectSet& effects) {
         if (effect.name == "smooth outlines") continue;
         EXPECT_EQ(effect.reason(request).empty(), off) << effect.name << " is not active";
     }
-    const auto& [volume, scene, camera, settings, size, outputs] = request;
+    const auto& [volume, scene, camera, settings, size, outputs, whole] = request;
     const Shot shot{volume, scene, camera, settings, size.x, size.y};
     if (const std::string why = refusal_of_layers({"", shot}); !why.empty()) GTEST_SKIP() << why;
     const RenderResult result = render(shot, outputs);

@@ -20,9 +20,9 @@ struct Marked {
 
 /// Draws so that the last chunk contains splats.
 void draw(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size) {
-    FramePlan plan = state.drawer.plan(state.level, s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    FramePlan plan = state.drawer.plan(state.level.all(), s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
     plan.params.chunk_slots = 0;
-    state.drawer.draw(state.level, plan);
+    state.drawer.draw(state.level.all(), plan);
 }
 
 /// Counts the marks of the last chunk. `cell`: pixels per mark.
@@ -131,7 +131,7 @@ TEST(MarkPixels, MarksWholeCellsInVeryLargePictures) {
         ASSERT_FALSE(state.plan().wide_marks);
         FramePlan plan = state.plan();
         plan.wide_marks = true;
-        state.drawer.draw(state.level, plan);
+        state.drawer.draw(state.level.all(), plan);
         EXPECT_EQ(count_marks(state, s, size, {4, 2}).missed, 0U);
         // Outside a support, rounding leaves a footprint of at most about 1e-8.
         const auto got = pixels();

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/forecast/forecast.h"
 #include "engine/frame/picture.h"
 
 namespace edgesplat::test {
@@ -19,13 +20,27 @@ struct DeviceUnderTest {
     /// Runs passes 1 to 2c as far as needed. Returns whether any ran.
     bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
-        return level.provide(scene, settings, keep_buried, cost);
+        std::vector<CollectionPlan> plans;
+        for (const FrameRequest& part : parts_of(scene, settings, keep_buried))
+            plans.push_back(plan_collection(*part.volume, part.scene, drawn_settings(part), keep_buried,
+                                            part.whole ? &*part.whole : nullptr));
+        return level.provide(plans.back(), plans.size() > 1 ? &plans.front() : nullptr, scene, cost);
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {
-        FramePlan planned = drawer.plan(level, scene, camera, settings, size, payload);
-        if (offset != glm::dvec2(0)) shift_rays(planned, offset);
-        drawer.draw(level, std::move(planned));
+        const auto plan = [&](const CollectedSplats& splats, const FrameRequest& part) {
+            FramePlan planned = drawer.plan(splats, part.scene, camera, settings, size, payload);
+            if (offset != glm::dvec2(0)) shift_rays(planned, offset);
+            return planned;
+        };
+        const auto parts = parts_of(scene, settings, !level.surfaces.collected());
+        FramePlan of_all = plan(level.all(), parts.back());
+        if (parts.size() == 1) return drawer.draw(level.all(), std::move(of_all));
+        drawer.draw_mixed(level.opaque(), plan(level.opaque(), parts.front()), level.all(), std::move(of_all));
+    }
+    std::vector<FrameRequest> parts_of(const Scene& scene, const Settings& settings, bool undivided) {
+        const FrameRequest request{level.volume.volume(), scene, {}, settings, {}, {}};
+        return undivided ? std::vector<FrameRequest>{request} : drawn_parts(request);
     }
     const gpu::Device& device() const { return session.device(); }
     gpu::Commands& commands() { return session.commands(); }

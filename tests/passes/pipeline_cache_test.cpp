@@ -118,9 +118,7 @@ TEST(Pipelines, AheadAreThoseOfThePicture) {
         std::set<std::string> used, ahead;
         for (const gpu::PipelineVariant& variant : state.session.pipelines().used())
             used.insert(edgesplat::text_of(variant));
-        const CollectionPlan plan = planned_collection(request);
-        const FrameForecast forecast =
-            forecast_frame(request, plan, most_splats(plan), kernel_reach(settings), state.device().profile());
+        const FrameForecast forecast = forecast_frame(request, most_splats_of, state.device().profile());
         for (const gpu::PipelineVariant& variant : pipelines_of(request, forecast))
             ahead.insert(edgesplat::text_of(variant));
         std::vector<std::string> unused;

@@ -57,9 +57,7 @@ TEST(EffectTable, NamesResourcesThatExist) {
         FrameRequest request = plain_request(torus_request());
         if (effect.base != nullptr) effect.base(request);
         effect.turn_on(request);
-        const CollectionPlan plan = planned_collection(request);
-        const FrameForecast forecast = forecast_frame(
-            request, plan, most_splats(plan), kernel_reach(drawn_settings(request)), gpu::profile_named("lavapipe"));
+        const FrameForecast forecast = forecast_frame(request, most_splats_of, gpu::profile_named("lavapipe"));
         std::set<std::string_view> names;
         for (const PlannedResource& resource : forecast.resources)
             names.insert(resource.text.name);

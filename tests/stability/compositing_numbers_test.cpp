@@ -70,7 +70,7 @@ TEST(CompositingNumbers, NamesASplatWithANonFiniteValue) {
         state.commands().copy(bad, state.lists().values, {{0, 17 * sizeof(float), sizeof(float)}});
     });
     try {
-        check_splats(state.session, state.level);
+        check_splats(state.session, state.level.all());
         ADD_FAILURE() << "the NaN was not reported";
     } catch (const Error& error) {
         EXPECT_TRUE(std::string(error.what()).starts_with("2_collect_splats: splat 17 of ")) << error.what();
