@@ -102,28 +102,30 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
                     .frame_fields = {"iso", "sheets_drawn", "solid", "visible_mask"},
                     .scene_fields = {"noise"}});
-    rows.push_back({.name = "opaque behind translucent",
-                    .help = "surface splats draw the opaque matter, kernels the translucent matter in front of it",
-                    .call = "scene.materials of both kinds, with settings.opaque = \"surfaces\" (on by default)",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        return is_mixed(r) ? "some matter is translucent, some opaque" : "";
-                    },
-                    .turn_on =
-                        [](FrameRequest& r) {
-                            draw_opaque_surfaces(r);
-                            r.scene.materials[r.scene.materials.size() - 2] = {{0.3, 0.5, 1}, 0.1};
-                        },
-                    .base =
-                        [](FrameRequest& r) {
-                            show_opaque_matter(r);
-                            draw_opaque_surfaces(r);
-                        },
-                    .passes = {"5_draw_tiles", "6_join_surfaces"},
-                    .resources = {"passed surfaces", "seen surfaces", "ways to surfaces"},
-                    .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
-                                "splat traits", "tiles of splats"},
-                    .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
-                    .frame_fields = {"seen_surfaces", "seen_ways", "surfaces_passed"}});
+    rows.push_back(
+        {.name = "opaque behind translucent",
+         .help = "surface splats draw the opaque matter, kernels the translucent matter in front of it",
+         .call = "scene.materials of both kinds, with settings.opaque = \"surfaces\" (on by default)",
+         .reason = [](const FrameRequest& r) -> std::string {
+             return is_mixed(r) ? "some matter is translucent, some opaque" : "";
+         },
+         .turn_on =
+             [](FrameRequest& r) {
+                 draw_opaque_surfaces(r);
+                 r.scene.materials[r.scene.materials.size() - 2] = {{0.3, 0.5, 1}, 0.1};
+             },
+         .base =
+             [](FrameRequest& r) {
+                 show_opaque_matter(r);
+                 draw_opaque_surfaces(r);
+             },
+         .passes = {"5_draw_tiles", "6_join_surfaces"},
+         .resources = {"ends of tiles", "passed surfaces", "seen surfaces", "ways to surfaces"},
+         .resized = {"batches of splats", "chunks of sheets", "listed bricks", "pairs of sheets", "prepared splats",
+                     "run offsets", "scene parameters", "sheet starts", "sheets of splats", "sort counters",
+                     "splat list", "splat order", "splat traits", "tiles of splats"},
+         .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
+         .frame_fields = {"seen_surfaces", "seen_ways", "surfaces_passed", "tile_ends"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",
@@ -185,7 +187,7 @@ std::vector<Effect> settings_effects() {
          .resources = {"buried mask"},
          .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "prepared splats"},
          .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
-         .scene_fields = {"opaque_mask", "bury_distance", "opaque_count", "opaque_iso"}});
+         .scene_fields = {"opaque_mask", "bury_distance", "opaque_iso"}});
     return rows;
 }
 

@@ -52,6 +52,7 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     const bool behind_kernels = plan.variant.mixed && !plan.variant.surfaces;
     if (!continues && targets.outlines && !behind_kernels) commands.fill(targets.outlines, shader::NO_OUTLINE);
     if (!continues && behind_kernels) commands.fill(targets.surfaces_passed, 0);
+    if (!continues && plan.variant.mixed && plan.variant.surfaces) commands.fill(targets.tile_ends, 0);
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
     if (!continues && plan.variant.begins)
@@ -145,7 +146,9 @@ void TilePasses::finish(std::uint32_t step) {
                        [&] { passes::refine_pixels(commands_, tile_count(plan_), step, plan_.variant.mixed); });
         copy_saturated_to_host();
     } else if (plan_.variant.mixed && plan_.variant.surfaces) {
-        commands_.to_host(targets_.output);  // only for checks: kernels are drawn next
+        // Kernels are drawn next; the picture so far is only checked.
+        for (const gpu::Buffer* seen : {&targets_.output, &targets_.tile_ends})
+            commands_.to_host(*seen);
     } else if (!how_.part) {
         const auto& p = plan_.params;
         if (plan_.variant.mixed) commands_.span("6_join_surfaces", [&] { passes::join_surfaces(commands_, p.size); });

@@ -59,6 +59,8 @@ void PictureDrawer::draw_mixed(const CollectedSplats& surfaces, FramePlan of_sur
     const std::uint64_t examined = examined_;
     std::vector<PassTime> times = std::move(times_);
     beside_ = std::move(plan_);
+    cull_behind(of_kernels, kernels.splats.lists().bricks,
+                targets_.resources().tile_ends.mapped<float>(tile_count(of_kernels)));
     draw_list(kernels, std::move(of_kernels));
     drawn_before_ = drawn;
     counts_before_ = counted;

@@ -3,8 +3,8 @@
 namespace edgesplat::passes {
 
 void join_surfaces(gpu::Commands& commands, const glm::ivec2& size) {
-    const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
-    commands.dispatch("6_join_surfaces.comp", {}, 0, {groups.x, groups.y});
+    const std::uint64_t pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+    commands.dispatch("6_join_surfaces.comp", {}, 0, commands.groups_for(pixels, 64));
     commands.barrier();
 }
 

@@ -286,6 +286,9 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(text("passed surfaces", "(y, x) uint", "5", "5, 6"), &T::surfaces_passed, &F::surfaces_passed,
                          Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return p.variant.mixed ? pixels(p) * kWord : 0; }),
+    row<TargetBufferRow>(
+        text("ends of tiles", "(tiles) float", "5", "host"), &T::tile_ends, &F::tile_ends, Place::Shared, kNoTexels,
+        kUnbound, [](const FramePlan& p, const Profile&) { return p.variant.mixed ? tile_count(p) * kWord : 0; }),
 };
 
 gpu::ImageShape texel(gpu::ImageShape kind) {

@@ -50,7 +50,7 @@ struct TargetResources {
     gpu::Buffer tile_marks, tile_closed, tile_todo, tile_closed_on_host, tile_finest, tile_pixels, tile_sheets,
         outlines;
     gpu::Buffer traced_rays, traced_entries;
-    gpu::Buffer seen_surfaces, seen_ways, surfaces_passed;
+    gpu::Buffer seen_surfaces, seen_ways, surfaces_passed, tile_ends;
 };
 
 /// The one descriptor set (shaders/shared/bindings.h). Unused bindings get a placeholder, a 1-texel image or zeros,

@@ -4,16 +4,16 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 #include "shaders/tiles/seen_surfaces.glsl"
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
-    if (any(greaterThanEqual(pixel, size))) return;
-    uint at = uint(pixel.y * size.x + pixel.x);
+    uint at = invocation_number();
+    if (at >= uint(params.frame.size.x * params.frame.size.y)) return;
     vec4 sum = load_pixel(at);
     SeenWays ways = seen_ways(at);
     pass_surfaces(sum, ways, at, NEVER_SEEN);

@@ -123,6 +123,7 @@ struct FrameParams {
     Address seen_surfaces;  // (2, size.y, size.x) vec4: first and second surface of each pixel: premultiplied payload, opacity
     Address seen_ways;      // (2, size.y, size.x) float: distance to it along the ray, voxels
     Address surfaces_passed;  // (size.y, size.x) uint: how many of them are in the picture so far
+    Address tile_ends;      // (tiles) uint: float bits of the depth (mm) at which the last of a tile's rays ends at a solid surface; infinity: not all end
 };
 
 EDGESPLAT_SHARED_END
@@ -133,7 +134,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1664);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1672);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -89,6 +89,7 @@ void main() {
     if (MIXED == 1u && !marks && inside) {
         for (uint k = 0u; k < SEEN_SURFACES; ++k) keep_seen(number, k, vec4(0.0), NEVER_SEEN);
     }
+    float end = 3e38;  // depth of the solid surface
     IF_ANY(some && !marks) {
         bool shades = some && !marks;
         vec4 seen = vec4(0.0);
@@ -99,7 +100,9 @@ void main() {
                 vec4 next = seen_of(front, u);
                 if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
                 if (MIXED == 1u && there) {
-                    if (mean_chord(front) >= params.frame.solid) next.a = 1.0;
+                    bool solid = mean_chord(front) >= params.frame.solid;
+                    next.a = solid ? 1.0 : next.a;
+                    end = solid ? way_to(front) * dot(params.frame.view_z, u) : end;
                     keep_seen(number, kept++, next.a * vec4(next.rgb, 1.0), way_to(front));
                 }
             }
@@ -110,6 +113,10 @@ void main() {
             }
         }
         if (some && !marks) store_pixel(number, seen);
+    }
+    if (MIXED == 1u && !marks) {
+        float last = subgroupMax(inside ? max(end, 0.0) : 0.0);
+        if (subgroupElect()) atomicMax(UintsRef(params.frame.tile_ends).at[tile], floatBitsToUint(last));
     }
     uint closing = subgroupAdd(closes ? 1u : 0u);
     if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);

@@ -339,6 +339,10 @@ std::vector<ImageCase> reference_cases() {
     cases.push_back({"phantom, taylor, thick sheets", with(phantom, F::Procedural, E::Taylor)});
     cases.push_back({"oblique orbital, optical depth", oblique_orbital(), Output::Tau});
     cases.push_back({"torus, depth", torus_shot(), Output::Depth});
+    Shot core = torus_shot();
+    core.scene.materials.back().extinction = 8;
+    cases.push_back({"opaque torus behind translucent matter", core});
+    cases.push_back({"opaque torus behind translucent matter, normals", core, Output::Normal});
     cases.push_back({"oblique orbital, normals", oblique_orbital(), Output::Normal});
     cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
     for (ImageCase& c : later_cases())

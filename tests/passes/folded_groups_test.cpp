@@ -66,6 +66,10 @@ std::vector<FoldedCase> folded_cases() {
     PassScene surfaces = traced_scenes()[2];
     surfaces.settings.opaque = OpaqueMatter::Surfaces;
     cases.push_back({surfaces, {80, 60}});
+    PassScene mixed = pass_scenes()[1];
+    mixed.scene.materials.back().extinction = 8;
+    mixed.settings.opaque = OpaqueMatter::Surfaces;
+    cases.push_back({mixed, {80, 60}});
     PassScene shaded = pass_scenes()[0];
     shaded.scene.lights = {directional_light({0.3, -1, 0.5})};
     shaded.scene.lights[0].shadows = true;

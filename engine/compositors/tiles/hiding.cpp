@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace edgesplat {
 namespace {
@@ -104,6 +105,25 @@ std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBrick
     }
     if (twice > kMostTwice * splats) return std::nullopt;
     return out;
+}
+
+void cull_behind(FramePlan& plan, const SplatBricks& bricks, std::span<const float> ends) {
+    const auto is_seen = [&](std::uint32_t number) {
+        const WideBox box(plan, bricks.bricks()[number].box);
+        const auto tiles = tiles_of(plan, box);
+        const double nearest = depths_of(plan, box).x;
+        if (!tiles) return true;
+        for (int y = tiles->y; y < tiles->w; ++y)
+            for (int x = tiles->x; x < tiles->z; ++x)
+                if (nearest < static_cast<double>(ends[static_cast<std::size_t>(y * plan.params.tiles.x + x)]))
+                    return true;
+        return false;
+    };
+    if (plan.bricks.empty()) return;
+    std::vector<std::uint32_t> seen;
+    std::ranges::copy_if(plan.bricks, std::back_inserter(seen), is_seen);
+    plan.bricks = seen;
+    draw_bricks(plan, bricks, seen);
 }
 
 OpenTiles::OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> closed) : plan_(&plan) {

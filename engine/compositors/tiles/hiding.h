@@ -20,6 +20,9 @@ struct FrontAndRest {
 /// saturate.
 std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least);
 
+/// Leaves out the bricks in view that lie behind the surfaces of a mixture. `ends`: FrameParams::tile_ends, row by row.
+void cull_behind(FramePlan& plan, const SplatBricks& bricks, std::span<const float> ends);
+
 /// The unsaturated tiles of a picture, as a summed-area table.
 class OpenTiles {
   public:
