@@ -219,6 +219,28 @@ TEST(Surfaces, DoNotDependOnTheSpacingOfSheets) {
     }
 }
 
+/// What earlier pictures left in the buffer of votes is never used, in particular not as a splat's number.
+TEST(Surfaces, DoNotDependOnEarlierVotes) {
+    PassScene s = labelled_ball();
+    s.settings.opaque = OpaqueMatter::Surfaces;
+    s.settings.pixels = PixelChoice::Every;
+    for (const bool cut : {true, false}) {
+        if (!cut) s.scene.effects.clip.keep.clear();
+        DeviceUnderTest& state = prepared(s);
+        const auto drawn = [&] {
+            state.draw(s.scene, s.camera, s.settings, kSurfacesSize, shader::PAYLOAD_COLOR);
+            const auto pixels = state.targets().output.mapped<glm::vec4>(96 * 80);
+            return std::vector<glm::vec4>(pixels.begin(), pixels.end());
+        };
+        const auto first = drawn();
+        state.commands().run([&] {
+            state.commands().fill(state.targets().tile_sheets, 0x4b000000);
+            state.commands().barrier();
+        });
+        EXPECT_TRUE(drawn() == first);
+    }
+}
+
 /// Kernels draw scenes with effects that surface splats do not have.
 TEST(Surfaces, LeaveOtherScenesToKernels) {
     PassScene s = surface_scenes()[3];
