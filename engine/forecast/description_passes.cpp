@@ -188,8 +188,7 @@ class Passes {
             if (plan.refined) {
                 std::vector<gpu::PipelineVariant> steps;
                 for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
-                    steps.push_back(
-                        variant("5_refine_pixels.comp", passes::refine_constants(step, plan.variant.mixed)));
+                    steps.push_back(variant("5_refine_pixels.comp", passes::refine_constants(plan.variant, step)));
                 add(name, "5_refine_pixels", kRates.composite_pixel * pixels, steps);
                 out_.back().depends = true;
             }

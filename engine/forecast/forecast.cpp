@@ -234,7 +234,7 @@ FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& co
     if (parts.size() == 1) return std::move(parts.front());
     for (FrameForecast& part : parts)
         for (ForecastDraw& draw : part.draws)
-            draw_mixed(draw.plan);
+            draw.plan.variant.mixed = true;
     FrameForecast out = std::move(parts.back());
     out.behind = std::make_shared<const FrameForecast>(std::move(parts.front()));
     out.resources = planned_resources(out);

@@ -143,7 +143,7 @@ void TilePasses::finish(std::uint32_t step) {
     shade(step);
     if (step > 1) {
         commands_.span("5_refine_pixels",
-                       [&] { passes::refine_pixels(commands_, tile_count(plan_), step, plan_.variant.mixed); });
+                       [&] { passes::refine_pixels(commands_, plan_.variant, tile_count(plan_), step); });
         copy_saturated_to_host();
     } else if (plan_.variant.mixed && plan_.variant.surfaces) {
         // Kernels are drawn next; the picture so far is only checked.

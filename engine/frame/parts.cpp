@@ -97,7 +97,8 @@ void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& re
         std::ranges::copy(whole, pixels.begin());
         commands.run([&] {
             commands.to_device(targets.output);
-            commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan_), step, false); });
+            commands.span("5_refine_pixels",
+                          [&] { passes::refine_pixels(commands, plan_.variant, tile_count(plan_), step); });
             for (const gpu::Buffer* seen : {&targets.output, &targets.tile_todo})
                 commands.to_host(*seen);
         });

@@ -48,8 +48,7 @@ void PictureDrawer::draw_list(const CollectedSplats& list, FramePlan plan) {
 
 void PictureDrawer::draw_mixed(const CollectedSplats& surfaces, FramePlan of_surfaces, const CollectedSplats& kernels,
                                FramePlan of_kernels) {
-    edgesplat::draw_mixed(of_surfaces);
-    edgesplat::draw_mixed(of_kernels);
+    of_surfaces.variant.mixed = of_kernels.variant.mixed = true;
     drawn_before_ = 0;
     counts_before_ = {};
     beside_ = of_kernels;

@@ -522,12 +522,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     return plan;
 }
 
-void draw_mixed(FramePlan& plan) {
-    plan.variant.mixed = true;
-    // Every pixel's ray ends at its own surface.
-    if (plan.variant.surfaces) plan.refined = plan.may_refine = false;
-}
-
 void shift_rays(FramePlan& plan, const glm::dvec2& offset) {
     // A sheared view: drawn slopes = ray slopes - slopes of the offset.
     auto& p = plan.params;

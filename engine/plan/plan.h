@@ -142,9 +142,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
                              glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]);
 
-/// Makes it a part of the picture of a mixture: its opaque or its translucent matter.
-void draw_mixed(FramePlan& plan);
-
 /// Shifts the rays of a plan: pixel (x, y) gets the ray through (x + offset.x, y + offset.y), in pixels.
 void shift_rays(FramePlan& plan, const glm::dvec2& offset);
 

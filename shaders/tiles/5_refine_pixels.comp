@@ -10,11 +10,13 @@ layout(local_size_x_id = SPEC_GROUP) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
 layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 STORED_WORDS(BIND_TILE_PIXELS, pixels, tile_pixels, load_listed, store_listed)
 #include "shaders/tiles/pixel_in_tile.glsl"
+#include "shaders/tiles/pixel_slopes.glsl"
 #include "shaders/tiles/seen_surfaces.glsl"
 
 shared uvec2 rough;  // cells that are listed, one bit each: the lists do not depend on the order of invocations
@@ -26,7 +28,50 @@ float largest(vec4 v) { return max(max(v.r, v.g), max(v.b, v.a)); }
 
 vec4 between(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - (a + d)) / 16.0; }
 
+float between(float a, float b, float c, float d) { return (9.0 * (b + c) - (a + d)) / 16.0; }
+
 void keep(ivec2 pixel, vec4 value) { store_pixel(pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
+
+// The ways of a cell's corners, and of those around, to the surfaces at which their rays end.
+struct CornerWays {
+    float at[4][4];
+    bool all_end;  // at solid surfaces
+    bool none_ends;
+    float bend;  // largest second difference
+};
+
+CornerWays corner_ways(ivec2 first, ivec2 last) {
+    CornerWays ways;
+    ways.all_end = true;
+    ways.none_ends = true;
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 4; ++x) {
+            ivec2 pixel = clamp(first + int(STEP) * ivec2(x - 1, y - 1), ivec2(0), last);
+            uint number = uint(pixel.y * params.frame.size.x + pixel.x);
+            ways.at[y][x] = seen_way(number, 0u);
+            ways.none_ends = ways.none_ends && ways.at[y][x] >= NEVER_SEEN;
+            ways.all_end = ways.all_end && seen_surface(number, 0u).a >= 1.0;
+        }
+    }
+    ways.bend = 0.0;
+    for (int i = 1; i < 3; ++i) {
+        for (int j = 0; j < 2; ++j) {
+            ways.bend = max(ways.bend, abs(ways.at[i][j] - 2.0 * ways.at[i][j + 1] + ways.at[i][j + 2]));
+            ways.bend = max(ways.bend, abs(ways.at[j][i] - 2.0 * ways.at[j + 1][i] + ways.at[j + 2][i]));
+        }
+    }
+    return ways;
+}
+
+void keep_surface(ivec2 pixel, vec4 value, float way, bool ends, uint tile) {
+    uint number = uint(pixel.y * params.frame.size.x + pixel.x);
+    keep_seen(number, 0u, ends ? vec4(max(value.rgb, 0.0) / max(value.a, 0.5), 1.0) : vec4(0.0), ends ? way : NEVER_SEEN);
+    keep_seen(number, 1u, vec4(0.0), NEVER_SEEN);
+    vec2 slope = slopes_of(pixel);
+    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    float end = max(way * dot(params.frame.view_z, u), 0.0);
+    if (ends) atomicMax(UintsRef(params.frame.tile_ends).at[tile], floatBitsToUint(end));
+}
 
 // Whether the rays of a cell all end at one smooth surface, or none at any.
 bool ends_smoothly(ivec2 first) {
@@ -76,16 +121,31 @@ void main() {
     float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
     bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
 
-    if (MIXED == 1u && smooth_here) smooth_here = ends_smoothly(first);
+    CornerWays ways;
+    if (MIXED == 1u && SURFACES == 1u) {
+        ways = corner_ways(first, last);
+        smooth_here = smooth_here && (ways.none_ends || (ways.all_end && ways.bend <= REFINE_WAY));
+    }
+    if (MIXED == 1u && SURFACES == 0u && smooth_here) smooth_here = ends_smoothly(first);
 
     const int half_step = int(STEP / 2u);
     bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;
     if (smooth_here) {
         vec4 rows[4];
         for (int y = 0; y < 4; ++y) rows[y] = between(at[y][0], at[y][1], at[y][2], at[y][3]);
+        vec4 column = between(at[0][1], at[1][1], at[2][1], at[3][1]), middle = between(rows[0], rows[1], rows[2], rows[3]);
         keep(first + ivec2(half_step, 0), rows[1]);
-        keep(first + ivec2(0, half_step), between(at[0][1], at[1][1], at[2][1], at[3][1]));
-        keep(first + half_step, between(rows[0], rows[1], rows[2], rows[3]));
+        keep(first + ivec2(0, half_step), column);
+        keep(first + half_step, middle);
+        if (MIXED == 1u && SURFACES == 1u) {
+            float way_rows[4];
+            for (int y = 0; y < 4; ++y) way_rows[y] = between(ways.at[y][0], ways.at[y][1], ways.at[y][2], ways.at[y][3]);
+            float way_column = between(ways.at[0][1], ways.at[1][1], ways.at[2][1], ways.at[3][1]);
+            float way_middle = between(way_rows[0], way_rows[1], way_rows[2], way_rows[3]);
+            keep_surface(first + ivec2(half_step, 0), rows[1], way_rows[1], ways.all_end, tile);
+            keep_surface(first + ivec2(0, half_step), column, way_column, ways.all_end, tile);
+            keep_surface(first + half_step, middle, way_middle, ways.all_end, tile);
+        }
     }
     uint me = gl_LocalInvocationIndex;
     if (me == 0u) rough = uvec2(0u);
