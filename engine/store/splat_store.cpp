@@ -423,18 +423,22 @@ void LevelStore::drop_splats() {
 bool LevelStore::provide(const CollectionPlan& plan, const CollectionPlan* opaque, const Scene& scene,
                          SetupCost& cost) {
     bool ran = volume.provide();
-    const auto collect = [&](SplatStore& list, const CollectionPlan& wanted) {
+    // Both lists of a mixture are one task for whoever is told how far it is.
+    const auto report = cost.progress;
+    const auto collect = [&](SplatStore& list, const CollectionPlan& wanted, double from) {
+        if (report && opaque) cost.progress = [&, from](double share) { report(from + 0.5 * share); };
         const bool collected = list.collect(volume, wanted, cost);
         const bool lit = list.light(volume, scene, cost);
         ran = ran || collected || lit;
     };
     if (opaque) {
-        collect(surfaces, *opaque);
+        collect(surfaces, *opaque, 0);
         surfaces.release_fields();
     } else {
         surfaces.drop();
     }
-    collect(splats, plan);
+    collect(splats, plan, 0.5);
+    cost.progress = report;
     volume.forget_changes();
     return ran;
 }

@@ -75,7 +75,7 @@ class SplatStore {
     std::uint64_t blocks_held() const;
     /// Invalidates occlusion and shadows; call before splats are added.
     void forget_light();
-    /// Frees the images from which the list was collected. A change of the list then starts anew.
+    /// Frees the fields that the list was collected from. Another list then estimates them again.
     void release_fields() {
         lists_.edges = {};
         lists_.buried = {};
