@@ -63,6 +63,8 @@ std::vector<std::pair<const char*, Shot>> shots() {
     Shot opaque = torus_shot();
     for (Material& material : opaque.scene.materials)
         if (material.extinction > 0) material.extinction = 8;
+    Shot mixture = torus_shot();
+    mixture.scene.materials.back().extinction = 8;
     Shot translucent = torus_shot();
     translucent.scene.effects.occlusion.emplace();
     Shot gray = torus_shot();
@@ -75,7 +77,7 @@ std::vector<std::pair<const char*, Shot>> shots() {
     Shot plain = translucent;
     plain.settings.edges = EdgeEstimator::Off;
     return {
-        {"opaque", opaque}, {"translucent", translucent}, {"transfer function", gray}, {"cut", cut}, {"plain", plain}};
+        {"opaque", opaque}, {"mixture", mixture}, {"translucent", translucent}, {"transfer function", gray}, {"cut", cut}, {"plain", plain}};
 }
 
 TEST_F(KeptBetweenRuns, DrawTheSamePicture) {
