@@ -76,8 +76,8 @@ std::vector<std::pair<const char*, Shot>> shots() {
     cut.scene.effects.clip.keep.push_back({{1, 0, 0}, cut.volume->geometry.to_world(glm::dvec3(12))});
     Shot plain = translucent;
     plain.settings.edges = EdgeEstimator::Off;
-    return {
-        {"opaque", opaque}, {"mixture", mixture}, {"translucent", translucent}, {"transfer function", gray}, {"cut", cut}, {"plain", plain}};
+    return {{"opaque", opaque},          {"mixture", mixture}, {"translucent", translucent},
+            {"transfer function", gray}, {"cut", cut},         {"plain", plain}};
 }
 
 TEST_F(KeptBetweenRuns, DrawTheSamePicture) {
