@@ -37,13 +37,14 @@ void add_placeholders(std::vector<PlannedResource>& out) {
 void add_volume_images(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const CollectionPlan& plan = f.collection;
     const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
-    for (const auto& row : volume_image_rows())
-        if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
-            out.push_back(image(row.text, row.shape(largest.size)));
+    const auto add_images = [&](const auto& rows) {
+        for (const auto& row : rows)
+            if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
+                out.push_back(image(row.text, row.shape(largest.size)));
+    };
+    add_images(volume_image_rows());
     // The surfaces' fields are freed before the kernels' are made.
-    for (const auto& row : field_image_rows())
-        if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
-            out.push_back(image(row.text, row.shape(largest.size)));
+    add_images(field_image_rows());
 }
 
 /// Adds the buffers of a splat list, and the lists of the light that reaches its splats.

@@ -42,17 +42,17 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     if (plan.variant.culled) commands.to_device(targets.batches);
     for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
         commands.fill(*zeroed, 0);
-    if (!continues)
+    if (!continues) {
+        const passes::DrawVariant& v = plan.variant;
         for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
             commands.fill(*zeroed, 0);
-    // A pixel without votes: negative words in its first texel (surface_pixel.glsl).
-    if (!continues && plan.variant.surfaces && !plan.variant.begins)
-        commands.fill(targets.tile_sheets, std::bit_cast<std::uint32_t>(-1.0F), 0, picture_bytes(plan));
-    // In a mixture, surfaces and kernels share the outlines.
-    const bool behind_kernels = plan.variant.mixed && !plan.variant.surfaces;
-    if (!continues && targets.outlines && !behind_kernels) commands.fill(targets.outlines, shader::NO_OUTLINE);
-    if (!continues && behind_kernels) commands.fill(targets.surfaces_passed, 0);
-    if (!continues && plan.variant.mixed && plan.variant.surfaces) commands.fill(targets.tile_ends, 0);
+        // A pixel without votes: negative words in its first texel (surface_pixel.glsl).
+        if (v.surfaces && !v.begins)
+            commands.fill(targets.tile_sheets, std::bit_cast<std::uint32_t>(-1.0F), 0, picture_bytes(plan));
+        // The kernels of a mixture add to the outlines of its surfaces.
+        if (targets.outlines && (v.surfaces || !v.mixed)) commands.fill(targets.outlines, shader::NO_OUTLINE);
+        if (v.mixed) commands.fill(v.surfaces ? targets.tile_ends : targets.surfaces_passed, 0);
+    }
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
     if (!continues && plan.variant.begins)

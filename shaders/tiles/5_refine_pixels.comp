@@ -32,21 +32,22 @@ float between(float a, float b, float c, float d) { return (9.0 * (b + c) - (a +
 
 void keep(ivec2 pixel, vec4 value) { store_pixel(pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
 
-// The ways of a cell's corners, and of those around, to the surfaces at which their rays end.
-struct CornerWays {
+// The ways of 4 x 4 pixels around a cell, `apart` pixels from each other, to the surfaces at which their rays end. Of
+// surface splats the cells' corners are known, of kernels all pixels are.
+struct CellWays {
     float at[4][4];
     bool all_end;  // at solid surfaces
     bool none_ends;
     float bend;  // largest second difference
 };
 
-CornerWays corner_ways(ivec2 first, ivec2 last) {
-    CornerWays ways;
+CellWays cell_ways(ivec2 first, ivec2 last, int apart) {
+    CellWays ways;
     ways.all_end = true;
     ways.none_ends = true;
     for (int y = 0; y < 4; ++y) {
         for (int x = 0; x < 4; ++x) {
-            ivec2 pixel = clamp(first + int(STEP) * ivec2(x - 1, y - 1), ivec2(0), last);
+            ivec2 pixel = clamp(first + apart * ivec2(x - 1, y - 1), ivec2(0), last);
             uint number = uint(pixel.y * params.frame.size.x + pixel.x);
             ways.at[y][x] = seen_way(number, 0u);
             ways.none_ends = ways.none_ends && ways.at[y][x] >= NEVER_SEEN;
@@ -71,25 +72,6 @@ void keep_surface(ivec2 pixel, vec4 value, float way, bool ends, uint tile) {
     vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
     float end = max(way * dot(params.frame.view_z, u), 0.0);
     if (ends) atomicMax(UintsRef(params.frame.tile_ends).at[tile], floatBitsToUint(end));
-}
-
-// Whether the rays of a cell all end at one smooth surface, or none at any.
-bool ends_smoothly(ivec2 first) {
-    float ways[3][3];
-    bool all_end = true, none_ends = true;
-    for (int y = 0; y < 3; ++y) {
-        for (int x = 0; x < 3; ++x) {
-            ivec2 pixel = first + int(STEP / 2u) * ivec2(x, y);
-            uint number = uint(pixel.y * params.frame.size.x + pixel.x);
-            ways[y][x] = seen_way(number, 0u);
-            none_ends = none_ends && ways[y][x] >= NEVER_SEEN;
-            all_end = all_end && seen_surface(number, 0u).a >= 1.0;
-        }
-    }
-    float bend = 0.0;
-    for (int i = 0; i < 3; ++i)
-        bend = max(bend, max(abs(ways[i][0] - 2.0 * ways[i][1] + ways[i][2]), abs(ways[0][i] - 2.0 * ways[1][i] + ways[2][i])));
-    return none_ends || (all_end && bend <= REFINE_WAY);
 }
 
 void main() {
@@ -121,14 +103,13 @@ void main() {
     float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
     bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
 
-    CornerWays ways;
-    if (MIXED == 1u && SURFACES == 1u) {
-        ways = corner_ways(first, last);
+    const int half_step = int(STEP / 2u);
+    CellWays ways;
+    if (MIXED == 1u) {
+        ways = cell_ways(first, last, SURFACES == 1u ? int(STEP) : half_step);
         smooth_here = smooth_here && (ways.none_ends || (ways.all_end && ways.bend <= REFINE_WAY));
     }
-    if (MIXED == 1u && SURFACES == 0u && smooth_here) smooth_here = ends_smoothly(first);
 
-    const int half_step = int(STEP / 2u);
     bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;
     if (smooth_here) {
         vec4 rows[4];
