@@ -95,9 +95,7 @@ void Renderer::divide_sheets(PartExchange* exchange) {
 FrameForecast Renderer::forecast(const FrameRequest& request) {
     require_samples(*request.volume, "a forecast of the frame");
     const auto count = [&](const FrameRequest& part, const CollectionPlan& wanted) {
-        const auto known = part.volume == state_->splats.level().volume.volume()
-                               ? state_->splats.collected_splats(wanted)
-                               : std::nullopt;
+        const auto known = state_->splats.collected_splats(part, wanted);
         return known ? *known : count_splats_of(part, wanted);
     };
     return forecast_frame(request, count, state_->session.profile());
@@ -133,6 +131,8 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         fail("effects.smooth_outlines: sheets in layers do not store outlines, expected --sheet-format tiles");
     if (scene.effects.smooth_outlines && state_->options.exchange)
         fail("effects.smooth_outlines: it cannot be combined with a division of sheets, expected false");
+    if (!scene.added.empty() && state_->options.exchange)
+        fail("volumes: several volumes cannot be combined with a division of sheets, expected one");
     // Votes about a surface cannot be divided between processes.
     Settings drawn = wanted;
     if (state_->options.exchange) drawn.opaque = OpaqueMatter::Kernels;
@@ -156,24 +156,25 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     const gpu::PipelineCreation made = pipelines.creation();
     // Optical depth needs all voxels; surface splats are some. So it is drawn from a list of its own.
     AovRequest outputs = aovs;
-    const bool tau_apart = aovs.tau && (draws_surfaces(settings, scene, *self.splats.original()) ||
-                                        mixture_of(settings, scene, *self.splats.original()));
+    const bool tau_apart = aovs.tau && scene.added.empty() &&
+                           (draws_surfaces(settings, scene, *self.splats.original()) ||
+                            mixture_of(settings, scene, *self.splats.original()));
     outputs.tau = outputs.tau && !tau_apart;
     FrameRequest request{self.splats.original(), scene, camera, wanted, size, outputs};
     self.splats.provide(request, stats);
     const LevelStore& level = self.splats.level();
-    request.volume = level.volume.volume();
+    self.splats.show_levels(request);
     const std::vector<FrameRequest> parts =
         level.volume.in_blocks() ? std::vector<FrameRequest>{request} : drawn_parts(request);
     const auto draw = [&](std::uint32_t payload, const glm::dvec2& offset) {
-        const auto plan = [&](const CollectedSplats& splats, const FrameRequest& part) {
-            FramePlan out = drawer.plan(splats, part.scene, camera, drawn_settings(part), size, payload);
-            if (offset != glm::dvec2(0)) shift_rays(out, offset);
-            return out;
-        };
-        FramePlan of_all = plan(level.all(), parts.back());
-        if (parts.size() == 1) return drawer.draw(level.all(), std::move(of_all));
-        drawer.draw_mixed(level.opaque(), plan(level.opaque(), parts.front()), level.all(), std::move(of_all));
+        std::vector<PicturePart> planned;
+        for (const FrameRequest& part : parts) {
+            const CollectedSplats list = self.splats.list_of(part);
+            planned.push_back({list, drawer.plan(list, part.scene, camera, drawn_settings(part), size, payload)});
+            if (offset != glm::dvec2(0)) shift_rays(planned.back().plan, offset);
+        }
+        if (parts.size() == 1) return drawer.draw(planned.front().list, std::move(planned.front().plan));
+        drawer.draw_parts(std::move(planned), are_of_several_volumes(parts));
     };
 
     const auto start = Clock::now();
@@ -220,10 +221,13 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     stats.pipelines_made = pipelines.creation().count - made.count;
     stats.pipeline_milliseconds = pipelines.creation().milliseconds - made.milliseconds;
     stats.device = device.info();
-    stats.voxels = volume.geometry.voxel_count();
-    for (const SplatStore* list : {&level.splats, &level.surfaces}) {
-        stats.splats_collected += list->lists().splat_count;
-        stats.edge_splats += list->lists().edge_splat_count;
+    for (std::size_t number = 0; number <= request.scene.added.size(); ++number) {
+        const LevelStore& one = self.splats.level(number);
+        stats.voxels += one.volume.volume()->geometry.voxel_count();
+        for (const SplatStore* list : {&one.splats, &one.surfaces}) {
+            stats.splats_collected += list->lists().splat_count;
+            stats.edge_splats += list->lists().edge_splat_count;
+        }
     }
     // Two rounds may examine the same splat, so the count is clamped.
     stats.splats_culled = stats.splats_collected - std::min(drawer.splats_examined(), stats.splats_collected);

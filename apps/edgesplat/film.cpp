@@ -23,11 +23,14 @@ SceneDocument document_at(const Film& film, double time) {
     SceneDocument document = film.document;
     for (const edgesplat::AnimatedParameter& parameter : film.animation)
         animate_number(document, parameter.key, value_at(parameter, time));
+    for (SceneDocument& entry : document.volumes)
+        entry.volume.checksum.clear();  // that of the first frame
     return document;
 }
 
-/// Reads the volume that `document` shows, if the renderer holds another one.
+/// Reads the volumes that `document` shows, if the renderer holds others.
 void show_volume(Film& film, edgesplat::Renderer& renderer, SceneDocument& document) {
+    read_volumes(document, film.folders);
     if (document.volume == film.source) return;
     film.source = document.volume;
     document.volume.checksum.clear();  // that of the first frame

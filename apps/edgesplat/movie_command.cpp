@@ -41,7 +41,8 @@ struct FrameRange {
 
 /// Values of the command line.
 struct MovieCommand {
-    std::string source, output;
+    std::vector<std::string> sources;
+    std::string output;
     VolumeOptions volume;
     DocumentEdits edits;
     std::optional<double> orbit, seconds, fps;
@@ -74,7 +75,7 @@ Places places_of(const MovieCommand& command) {
 
 SceneDocument document_of(const MovieCommand& command, std::vector<fs::path>& folders) {
     SceneDocument document;
-    read_source(command.source, document, folders);
+    read_sources(command.sources, document, folders);
     apply(command.volume, document.volume);
     command.edits.apply(document);
     document.output.file.clear();
@@ -280,9 +281,9 @@ void add_movie_options(CLI::App& app, MovieCommand& command) {
 void add_movie_command(CLI::App& app, int& exit_status) {
     CLI::App& sub = *app.add_subcommand("movie", "Render a movie: a camera path around or through a volume");
     const auto command = std::make_shared<MovieCommand>();
-    sub.add_option("VOLUME", command->source,
+    sub.add_option("VOLUME", command->sources,
                    "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml) whose table "
-                   "[movie] describes the camera path and the animations")
+                   "[movie] describes the camera path and the animations. More than one: as for `edgesplat render`")
         ->required()
         ->type_name("");
     add_movie_options(sub, *command);

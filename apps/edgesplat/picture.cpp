@@ -100,8 +100,7 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
 
 /// The volume's path as the picture records it: as written if it leads to the volume from the working folder or
 /// EDGESPLAT_VOLUMES, otherwise relative to the picture's folder.
-std::string recorded_path(const PictureRequest& request) {
-    const std::string& written = request.document.volume.path;
+std::string recorded_path(const PictureRequest& request, const std::string& written) {
     if (edgesplat::is_builtin(written) || std::filesystem::path(written).is_absolute()) return written;
     const std::string found = edgesplat::find_volume(written, request.folders);
     try {
@@ -126,9 +125,14 @@ std::string scene_of_picture(const PictureRequest& request, const edgesplat::Vol
                              const edgesplat::Scene& scene, const edgesplat::Camera& camera,
                              const edgesplat::Settings& settings) {
     edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
-    document.volume.path = recorded_path(request);
-    document.volume.label_names = recorded_file(request, request.document.volume.label_names);
-    document.volume.segmentation = recorded_file(request, request.document.volume.segmentation);
+    const auto record = [&](edgesplat::VolumeSource& recorded) {
+        recorded.path = recorded_path(request, recorded.path);
+        recorded.label_names = recorded_file(request, recorded.label_names);
+        recorded.segmentation = recorded_file(request, recorded.segmentation);
+    };
+    record(document.volume);
+    for (edgesplat::SceneDocument& entry : document.volumes)
+        record(entry.volume);
     return scene_text(document);
 }
 
@@ -162,7 +166,14 @@ void make_picture(PictureRequest request) {
         fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned, request.device.profile)));
         return;
     }
-    RunDescription description{request.command_line, volume.get(), &scene, camera, recorded_path(request), {}, {}, {}};
+    RunDescription description{request.command_line,
+                               volume.get(),
+                               &scene,
+                               camera,
+                               recorded_path(request, request.document.volume.path),
+                               {},
+                               {},
+                               {}};
     std::vector<RenderedFrame> frames;
     std::vector<CpuMeasurements> measurements;
     std::optional<edgesplat::accuracy::ChosenSettings> choice;

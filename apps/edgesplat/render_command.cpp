@@ -18,6 +18,7 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/scene/scene_file.h"
+#include "engine/volume/analytic_volumes.h"
 
 namespace {
 
@@ -25,7 +26,7 @@ using edgesplat::SceneDocument;
 
 /// Values of the command line.
 struct RenderCommand {
-    std::string source;  ///< a volume or a scene file
+    std::vector<std::string> sources;  ///< volumes or scene files
     VolumeOptions volume;
     DocumentEdits edits;
     std::string json;
@@ -40,7 +41,7 @@ void run(const RenderCommand& command, const std::string& command_line) {
                            .json = command.json,
                            .command_line = command_line,
                            .quiet = command.quiet || !ranks::first()};
-    read_source(command.source, request.document, request.folders);
+    read_sources(command.sources, request.document, request.folders);
     apply(command.volume, request.document.volume);
     command.edits.apply(request.document);
     if (request.document.output.file.empty() && !command.explain.explain) throw CLI::RequiredError("--output");
@@ -139,12 +140,50 @@ void read_source(const std::string& source, SceneDocument& document, std::vector
     }
 }
 
+namespace {
+
+/// Adds the volume of a document as one beside the first; `folders` were searched for its files. `apart`: its paths
+/// must not depend on the working folder.
+void add_volume(SceneDocument& document, const SceneDocument& other, const std::vector<std::filesystem::path>& folders,
+                bool apart) {
+    const auto place = [&](const std::string& path) { return apart ? std::filesystem::absolute(path).string() : path; };
+    SceneDocument& entry = document.volumes.emplace_back();
+    entry.volume = other.volume;
+    entry.iso_values = other.iso_values;
+    entry.iso_sigmas = other.iso_sigmas;
+    entry.below = other.below;
+    entry.materials = other.materials;
+    entry.transfer = other.transfer;
+    entry.transfer_preset = other.transfer_preset;
+    std::string& path = entry.volume.path;
+    if (!edgesplat::is_builtin(path)) path = place(edgesplat::find_volume(path, folders));
+    for (std::string* file : {&entry.volume.segmentation, &entry.volume.label_names})
+        if (!file->empty()) *file = place(edgesplat::find_file(*file, folders).string());
+}
+
+}  // namespace
+
+void read_sources(const std::vector<std::string>& sources, SceneDocument& document,
+                  std::vector<std::filesystem::path>& folders) {
+    read_source(sources.front(), document, folders);
+    const bool apart = edgesplat::is_scene_path(sources.front());
+    for (std::size_t i = 1; i < sources.size(); ++i) {
+        SceneDocument other;
+        std::vector<std::filesystem::path> of_other;
+        read_source(sources[i], other, of_other);
+        add_volume(document, other, of_other, apart);
+        for (const SceneDocument& entry : other.volumes)
+            add_volume(document, entry, of_other, apart);
+    }
+}
+
 void add_render_command(CLI::App& app, const std::string& command_line) {
     CLI::App& sub = *app.add_subcommand("render", "Render a volume or a scene file to a picture");
     const auto command = std::make_shared<RenderCommand>();
-    sub.add_option("VOLUME", command->source,
+    sub.add_option("VOLUME", command->sources,
                    "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml), which the "
-                   "options below change")
+                   "options below change. More than one: their matter is drawn in one picture; options and camera are "
+                   "those of the first")
         ->required()
         ->type_name("");
     add_output_options(sub, *command);
@@ -158,6 +197,7 @@ void add_render_command(CLI::App& app, const std::string& command_line) {
         "  edgesplat render head.nrrd --iso -400 -o nose.png --voxel --eye 128,148,14 --direction 0,1,0.05 --fov 90\n"
         "  edgesplat render head.nrrd --iso=-400,300 --color 1,.8,.7 --color 1,1,.9 --extinction .1 --extinction 8 -o "
         "two.exr --aov depth,normal\n"
+        "  edgesplat render ct.nii.gz tumour.nii.gz -o both.png --iso 300\n"
         "  edgesplat render cut.toml -o cut.png --fog 0.01 --set effects.fog.start=50");
     sub.callback([command, command_line] { run(*command, command_line); });
 }

@@ -21,3 +21,7 @@ void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& vo
 /// volume. Throws edgesplat::Error.
 void read_source(const std::string& source, edgesplat::SceneDocument& document,
                  std::vector<std::filesystem::path>& folders);
+
+/// The same for several: the volumes of the others are drawn beside the first one.
+void read_sources(const std::vector<std::string>& sources, edgesplat::SceneDocument& document,
+                  std::vector<std::filesystem::path>& folders);

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 1> kSceneExtensions{".toml"};
 
 struct NewOptions {
-    std::string source, output;  ///< a volume or a scene file; the new file
+    std::vector<std::string> sources;  ///< volumes or scene files
+    std::string output;                ///< the new file
     DocumentEdits edits;
     VolumeOptions volume;
 };
@@ -38,11 +39,19 @@ std::string path_in_scene(const std::string& path, const fs::path& folder) {
     return fs::proximate(path, folder.empty() ? "." : folder).string();
 }
 
+/// Makes the files of a volume, found in `folders`, relative to the scene file's folder.
+void place_in_scene(edgesplat::VolumeSource& volume, const std::vector<fs::path>& folders, const fs::path& folder) {
+    if (!edgesplat::is_builtin(volume.path))
+        volume.path = path_in_scene(edgesplat::find_volume(volume.path, folders), folder);
+    for (std::string* file : {&volume.label_names, &volume.segmentation})
+        if (!file->empty()) *file = path_in_scene(*file, folder);
+}
+
 void run_new(const NewOptions& options) {
     if (!options.output.empty()) edgesplat::check_output_path(options.output, kSceneExtensions);
     edgesplat::SceneDocument document;
     std::vector<fs::path> folders;
-    read_source(options.source, document, folders);
+    read_sources(options.sources, document, folders);
     apply(options.volume, document.volume);
     options.edits.apply(document);
     edgesplat::Volume volume = load_with_progress(document, folders, false);
@@ -58,13 +67,10 @@ void run_new(const NewOptions& options) {
     }
     // The same camera, bit for bit, as numbers that can be edited.
     document.camera = {.eye = camera.eye, .direction = camera.direction, .up = camera.up, .fov = camera.fov_y};
-    const std::string found = edgesplat::is_builtin(document.volume.path)
-                                  ? document.volume.path
-                                  : edgesplat::find_volume(document.volume.path, folders);
     const fs::path folder = fs::path(options.output).parent_path();
-    document.volume.path = path_in_scene(found, folder);
-    for (std::string* file : {&document.volume.label_names, &document.volume.segmentation})
-        if (!file->empty()) *file = path_in_scene(*file, folder);
+    place_in_scene(document.volume, folders, folder);
+    for (edgesplat::SceneDocument& entry : document.volumes)
+        place_in_scene(entry.volume, folders, folder);
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
     if (options.output.empty()) {
@@ -108,7 +114,7 @@ void add_scene_command(CLI::App& app, int& exit_status) {
     CLI::App& make = *scene.add_subcommand("new", "Write a new scene file with every key explained");
     const auto options = std::make_shared<NewOptions>();
     make.add_option(
-            "VOLUME", options->source,
+            "VOLUME", options->sources,
             "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml). The options are "
             "those of `edgesplat render`, which draws the same picture from the new file")
         ->required()

@@ -147,7 +147,8 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     }
     out.size = request.size;
     out.voxels = request.volume->geometry.voxel_count();
-    out.splats = forecast.splats.extent.count + (forecast.behind ? forecast.behind->splats.extent.count : 0);
+    for (const FrameForecast* part : forecast_parts(forecast))
+        out.splats += part->splats.extent.count;
     out.splats_from = forecast.splats.from == SplatCount::From::Frame ? "as collected" : "counted on the host";
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;

@@ -199,16 +199,32 @@ class Passes {
             add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
                 {{{"group_rect.vert", "6_composite_sheet.frag"}, {{shader::SPEC_PAYLOAD, plan.variant.payload}}}});
         }
-        if (plan.variant.mixed && plan.variant.surfaces) return;
-        if (plan.variant.mixed)
-            add(name, "6_join_surfaces", kRates.resolve_pixel * pixels, {variant("6_join_surfaces.comp", {})});
-        add(name, "7_resolve", kRates.resolve_pixel * pixels,
+        if (plan.variant.several && plan.variant.surfaces) add_merge(draw);
+        if (!plan.variant.mixed)
+            add(name, "7_resolve", kRates.resolve_pixel * pixels,
+                {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
+    }
+
+    /// What follows the parts of a picture.
+    void end_parts(const ForecastDraw& draw) {
+        const FramePlan& plan = draw.plan;
+        const double milliseconds = kRates.resolve_pixel * plan.params.size.x * plan.params.size.y;
+        const char* name = draw.name.c_str();
+        if (plan.variant.several) add_merge(draw);
+        add(name, "6_join_surfaces", milliseconds, {variant("6_join_surfaces.comp", {})});
+        add(name, "7_resolve", milliseconds,
             {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
     }
 
     std::vector<PassDescription> take() { return std::move(out_); }
 
   private:
+    void add_merge(const ForecastDraw& draw) {
+        const glm::ivec2& size = draw.plan.params.size;
+        add(draw.name.c_str(), "6_merge_surfaces", kRates.resolve_pixel * size.x * size.y,
+            {variant("6_merge_surfaces.comp", {})});
+    }
+
     double milliseconds_per_;
     const gpu::DeviceProfile* profile_;
     int again_ = 1;  ///< number of runs of each pass
@@ -220,14 +236,15 @@ class Passes {
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
                                               const DeviceInfo* device) {
     Passes passes(device, *forecast.profile);
-    for (const FrameForecast* part : {forecast.behind.get(), &forecast}) {
-        if (!part) continue;
+    const std::vector<const FrameForecast*> parts = forecast_parts(forecast);
+    for (const FrameForecast* part : parts) {
         passes.add_setup(*part);
         passes.add_reach(request, *part);
     }
     for (std::size_t i = 0; i < forecast.draws.size(); ++i) {
-        if (forecast.behind) passes.add_draw(request, forecast.behind->draws[i]);
-        passes.add_draw(request, forecast.draws[i]);
+        for (const FrameForecast* part : parts)
+            passes.add_draw(request, part->draws[i]);
+        if (parts.size() > 1) passes.end_parts(forecast.draws[i]);
     }
     return passes.take();
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "engine/forecast/effect_rows.h"
 #include "engine/forecast/forecast.h"
@@ -41,7 +42,16 @@ void draw_opaque_surfaces(FrameRequest& request) {
 }
 
 bool is_mixed(const FrameRequest& request) {
-    return drawn_parts(request).size() > 1;
+    const auto is_of_kernels = [](const FrameRequest& part) { return !planned_collection(part).surfaces; };
+    const std::vector<FrameRequest> parts = drawn_parts(request);
+    return parts.size() > 1 && is_of_kernels(parts.back());
+}
+
+std::size_t volumes_of(std::span<const FrameRequest> parts) {
+    std::set<std::size_t> numbers;
+    for (const FrameRequest& part : parts)
+        numbers.insert(part.number);
+    return numbers.size();
 }
 
 }  // namespace
@@ -89,9 +99,9 @@ std::vector<Effect> settings_effects() {
                     .help = "opaque matter is a surface: splats vote where a ray enters it, and a pixel is shaded once",
                     .call = "settings.opaque = \"surfaces\"; --opaque surfaces (on by default)",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        const bool surfaces = draws_surfaces(r.settings, r.scene, *r.volume);
-                        if (surfaces && !keeps_buried(r)) return "all matter is opaque";
-                        return is_mixed(r) ? "some matter is opaque" : "";
+                        const std::vector<FrameRequest> parts = drawn_parts(r);
+                        if (!planned_collection(parts.front()).surfaces) return "";
+                        return is_mixed(r) ? "some matter is opaque" : "all matter is opaque";
                     },
                     .turn_on = draw_opaque_surfaces,
                     .base = show_opaque_matter,
@@ -126,6 +136,37 @@ std::vector<Effect> settings_effects() {
                      "splat list", "splat order", "splat traits", "tiles of splats"},
          .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
          .frame_fields = {"seen_surfaces", "seen_ways", "surfaces_passed", "tile_ends"}});
+    rows.push_back(
+        {.name = "several volumes",
+         .help = "surfaces of several volumes are drawn one volume after another; each ray keeps the first two",
+         .call = "scene.added; [[volumes]] in a scene file, or several volumes on the command line",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const std::vector<FrameRequest> parts = drawn_parts(r);
+             return are_of_several_volumes(parts) ? fmt::format("{} volumes have matter", volumes_of(parts)) : "";
+         },
+         .turn_on =
+             [](FrameRequest& r) {
+                 draw_opaque_surfaces(r);
+                 auto moved = std::make_shared<Volume>(*r.volume);
+                 moved->geometry.origin += 0.3 * moved->geometry.index_to_world_axes * glm::dvec3(moved->geometry.dims);
+                 r.scene.added.push_back({.volume = std::move(moved),
+                                          .iso_values = {r.scene.iso_values.back()},
+                                          .materials = {{}, r.scene.materials.back()},
+                                          .transfer = {},
+                                          .label_colors = r.scene.label_colors});
+             },
+         .base =
+             [](FrameRequest& r) {
+                 show_opaque_matter(r);
+                 draw_opaque_surfaces(r);
+             },
+         .passes = {"6_merge_surfaces", "6_join_surfaces"},
+         .resources = {"ends of tiles", "nearest surfaces", "passed surfaces", "seen surfaces",
+                       "ways to nearest surfaces", "ways to surfaces"},
+         .resized = {},
+         .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
+         .frame_fields = {"nearest_surfaces", "nearest_ways", "seen_surfaces", "seen_ways", "surfaces_passed",
+                          "tile_ends"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",

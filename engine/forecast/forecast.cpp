@@ -169,7 +169,15 @@ Settings drawn_settings(const FrameRequest& request) {
     return canonical_settings(request.settings, request.scene);
 }
 
-std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
+FrameRequest request_of_volume(const FrameRequest& request, std::size_t number) {
+    FrameRequest one = request;
+    one.scene = scene_of_volume(request.scene, number);
+    if (number > 0) one.volume = request.scene.added[number - 1].volume;
+    one.number = number;
+    return one;
+}
+
+std::vector<FrameRequest> parts_of_volume(const FrameRequest& request) {
     // Optical depth needs all voxels.
     auto mixture = request.outputs.tau ? std::nullopt : mixture_of(request.settings, request.scene, *request.volume);
     if (!mixture) return {request};
@@ -177,7 +185,74 @@ std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
     parts[0].scene = std::move(mixture->surfaces);
     parts[1].scene = std::move(mixture->kernels);
     parts[1].whole = request.scene;
+    parts[0].mixed = parts[1].mixed = true;
     return parts;
+}
+
+namespace {
+
+/// An order of volumes that does not depend on the scene's.
+bool precedes(const FrameRequest& a, const FrameRequest& b) {
+    const auto key = [](const Volume& volume) {
+        const VolumeGeometry& g = volume.geometry;
+        std::vector<double> numbers{g.origin.x, g.origin.y, g.origin.z};
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < 3; ++i)
+                numbers.push_back(g.index_to_world_axes[axis][i]);
+        return std::pair(volume.checksum, numbers);
+    };
+    return key(*a.volume) < key(*b.volume);
+}
+
+bool has_opaque_matter(const FrameRequest& part) {
+    const std::uint32_t translucent = translucent_materials(part.scene, part.volume->geometry);
+    for (std::size_t m = 0; m < part.scene.materials.size(); ++m)
+        if (extinctions_of(part.scene, m).most > 0 && (translucent >> m & 1U) == 0) return true;
+    return false;
+}
+
+/// Throws Error if a picture of several volumes has what they cannot be drawn with.
+void check_several(const FrameRequest& request) {
+    if (request.outputs.tau) fail("output tau: is of one volume, but the scene has several");
+    if (occludes_ambient(request.scene))
+        fail("effects.occlusion: several volumes do not occlude each other, expected a scene of one volume");
+    if (!shadow_lights(request.scene).empty())
+        fail("lights: several volumes cast no shadows on each other, expected lights without shadows");
+}
+
+}  // namespace
+
+std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
+    if (request.scene.added.empty()) return parts_of_volume(request_of_volume(request, 0));
+    check_several(request);
+    std::vector<FrameRequest> surfaces, kernels;
+    for (std::size_t number = 0; number <= request.scene.added.size(); ++number) {
+        const FrameRequest one = request_of_volume(request, number);
+        if (!has_matter(one.scene)) continue;
+        for (FrameRequest& part : parts_of_volume(one)) {
+            const bool opaque = draws_surfaces(drawn_settings(part), part.scene, *part.volume);
+            (opaque ? surfaces : kernels).push_back(std::move(part));
+        }
+    }
+    for (const FrameRequest& part : kernels) {
+        const std::string& name = part.volume->name;
+        if (kernels.size() > 1 && part.volume != kernels.front().volume)
+            fail("volumes: {} and {} have translucent matter, expected at most one such volume of several",
+                 kernels.front().volume->name, name);
+        if (has_opaque_matter(part))
+            fail(
+                "volumes: the opaque matter of {} would be drawn by kernels; several volumes need surface splats: "
+                "opaque = surfaces, edges = cubic, sheet_format = tiles, no antialias",
+                name);
+    }
+    std::ranges::stable_sort(surfaces, precedes);
+    surfaces.insert(surfaces.end(), kernels.begin(), kernels.end());
+    if (surfaces.empty()) surfaces.push_back(request_of_volume(request, 0));
+    return surfaces;
+}
+
+bool are_of_several_volumes(std::span<const FrameRequest> parts) {
+    return std::ranges::any_of(parts, [&](const FrameRequest& part) { return part.number != parts.front().number; });
 }
 
 CollectionPlan planned_collection(const FrameRequest& part) {
@@ -195,6 +270,7 @@ FrameForecast forecast_part(const FrameRequest& part, const CollectionPlan& coll
                             double reach, const gpu::DeviceProfile& profile) {
     FrameForecast out;
     out.profile = &profile;
+    out.number = part.number;
     out.settings = drawn_settings(part);
     out.collection = collection;
     out.splats = splats;
@@ -226,19 +302,31 @@ SplatCount count_splats_of(const FrameRequest& part, const CollectionPlan& colle
 FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& count,
                              const gpu::DeviceProfile& profile) {
     std::vector<FrameForecast> parts;
-    for (const FrameRequest& part : drawn_parts(request)) {
+    const std::vector<FrameRequest> drawn = drawn_parts(request);
+    for (const FrameRequest& part : drawn) {
         const CollectionPlan collection = planned_collection(part);
         parts.push_back(
             forecast_part(part, collection, count(part, collection), kernel_reach(drawn_settings(part)), profile));
     }
     if (parts.size() == 1) return std::move(parts.front());
-    for (FrameForecast& part : parts)
-        for (ForecastDraw& draw : part.draws)
+    FrameForecast out;
+    for (FrameForecast& part : parts) {
+        for (ForecastDraw& draw : part.draws) {
             draw.plan.variant.mixed = true;
-    FrameForecast out = std::move(parts.back());
-    out.behind = std::make_shared<const FrameForecast>(std::move(parts.front()));
+            draw.plan.variant.several = are_of_several_volumes(drawn);
+        }
+        if (&part != &parts.front()) part.behind = std::make_shared<const FrameForecast>(std::move(out));
+        out = std::move(part);
+    }
     out.resources = planned_resources(out);
     return out;
+}
+
+std::vector<const FrameForecast*> forecast_parts(const FrameForecast& forecast) {
+    std::vector<const FrameForecast*> parts;
+    for (const FrameForecast* part = &forecast; part; part = part->behind.get())
+        parts.insert(parts.begin(), part);
+    return parts;
 }
 
 }  // namespace edgesplat

@@ -56,15 +56,30 @@ struct FrameForecast {
     bool occluded = false;                   ///< ambient occlusion is on
     std::size_t shadow_lights = 0;           ///< number of lights with shadows
     std::vector<PlannedResource> resources;  ///< all resources of a Renderer during this frame
-    /// Of a mixture: its opaque matter, drawn first; the rest of this forecast is of its translucent matter. Else null.
+    std::size_t number = 0;                  ///< FrameRequest::number
+    /// Of several parts (drawn_parts): the one before this, drawn first. Else null.
     std::shared_ptr<const FrameForecast> behind;
 };
+
+/// The forecast's parts, in the order in which they are drawn.
+std::vector<const FrameForecast*> forecast_parts(const FrameForecast& forecast);
 
 /// The request's canonical_settings().
 Settings drawn_settings(const FrameRequest& request);
 
-/// What is drawn from a splat list of its own: the parts of a mixture, opaque matter first, else the request itself.
+/// The request with one of the scene's volumes alone (scene_of_volume).
+FrameRequest request_of_volume(const FrameRequest& request, std::size_t number);
+
+/// What is drawn of one volume from splat lists of its own: the parts of a mixture, opaque matter first, else the
+/// request itself. Precondition: no added volumes.
+std::vector<FrameRequest> parts_of_volume(const FrameRequest& request);
+
+/// The parts of all volumes with matter: surface splats first, then at most one part of kernels. Their order does not
+/// depend on that of the volumes. Throws Error if several volumes cannot be drawn together.
 std::vector<FrameRequest> drawn_parts(const FrameRequest& request);
+
+/// Whether the parts are of several volumes.
+bool are_of_several_volumes(std::span<const FrameRequest> parts);
 
 /// Whether buried voxels must be kept.
 bool keeps_buried(const FrameRequest& request);

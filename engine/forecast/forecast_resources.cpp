@@ -1,6 +1,7 @@
 // Lists the images and buffers of a frame from the resource table, which also allocates them; a test compares the
 // bytes.
 #include <algorithm>
+#include <map>
 #include <vulkan/vulkan_format_traits.hpp>
 
 #include "engine/forecast/forecast.h"
@@ -34,12 +35,13 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(buffer(kPlaceholderBlock, sizeof(shader::FrameParams), gpu::Buffer::Place::Host));
 }
 
-void add_volume_images(const FrameForecast& f, std::vector<PlannedResource>& out) {
-    const CollectionPlan& plan = f.collection;
+/// `parts`: of one volume.
+void add_volume_images(std::span<const FrameForecast* const> parts, std::vector<PlannedResource>& out) {
+    const CollectionPlan& plan = parts.front()->collection;
     const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
     const auto add_images = [&](const auto& rows) {
         for (const auto& row : rows)
-            if (row.held(plan) || (f.behind && row.held(f.behind->collection)))
+            if (std::ranges::any_of(parts, [&](const FrameForecast* part) { return row.held(part->collection); }))
                 out.push_back(image(row.text, row.shape(largest.size)));
     };
     add_images(volume_image_rows());
@@ -93,9 +95,13 @@ void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& 
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<PlannedResource> out;
     std::vector<FramePlan> draws;
-    add_volume_images(forecast, out);
-    for (const FrameForecast* part : {forecast.behind.get(), &forecast}) {
-        if (!part) continue;
+    const std::vector<const FrameForecast*> parts = forecast_parts(forecast);
+    std::map<std::size_t, std::vector<const FrameForecast*>> volumes;
+    for (const FrameForecast* part : parts)
+        volumes[part->number].push_back(part);
+    for (const auto& [number, of_volume] : volumes)
+        add_volume_images(of_volume, out);
+    for (const FrameForecast* part : parts) {
         add_lists(*part, out);
         for (const ForecastDraw& draw : part->draws)
             draws.push_back(draw.plan);

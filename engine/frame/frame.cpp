@@ -12,6 +12,7 @@
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/6_composite_sheet.h"
 #include "engine/passes/6_join_surfaces.h"
+#include "engine/passes/6_merge_surfaces.h"
 #include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
@@ -38,6 +39,40 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
     return commands.span_times();
 }
 
+namespace {
+
+void merge(gpu::Commands& commands, const FramePlan& plan, passes::Merge how) {
+    commands.span("6_merge_surfaces", [&] { passes::merge_surfaces(commands, how, plan.params.size); });
+}
+
+/// Pass 7 of a tiled picture, after the surfaces behind it are joined.
+void end_picture(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+    const glm::ivec2& size = plan.params.size;
+    if (plan.variant.mixed) commands.span("6_join_surfaces", [&] { passes::join_surfaces(commands, size); });
+    commands.span("7_resolve", [&] {
+        // A pixel on an outline also blends in its neighbour's colour before this pass.
+        if (plan.variant.outlines) {
+            commands.copy(targets.output, targets.tile_sheets, {{0, 0, picture_bytes(plan)}});
+            commands.barrier();
+        }
+        passes::resolve(commands, plan.variant, size, plan.gradient);
+        commands.to_host(targets.output);
+    });
+}
+
+}  // namespace
+
+std::vector<PassTime> join_volumes(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+    commands.run([&] {
+        for (const gpu::Buffer* zeroed : {&targets.output, &targets.surfaces_passed})
+            commands.fill(*zeroed, 0);
+        commands.barrier();
+        merge(commands, plan, passes::Merge::Take);
+        end_picture(commands, plan, targets);
+    });
+    return commands.span_times();
+}
+
 void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool continues) {
     if (plan.variant.culled) commands.to_device(targets.batches);
     for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
@@ -50,11 +85,12 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
         if (v.surfaces && !v.begins)
             commands.fill(targets.tile_sheets, std::bit_cast<std::uint32_t>(-1.0F), 0, picture_bytes(plan));
         // The kernels of a mixture add to the outlines of its surfaces.
-        if (targets.outlines && (v.surfaces || !v.mixed)) commands.fill(targets.outlines, shader::NO_OUTLINE);
+        if (targets.outlines && plan.first) commands.fill(targets.outlines, shader::NO_OUTLINE);
         if (v.mixed) commands.fill(v.surfaces ? targets.tile_ends : targets.surfaces_passed, 0);
     }
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
+    if (!continues && plan.variant.several && !plan.variant.surfaces) merge(commands, plan, passes::Merge::Take);
     if (!continues && plan.variant.begins)
         commands.span("5_begin_surfaces", [&] { passes::begin_surfaces(commands, plan.variant, plan.params.size); });
     commands.span("3_select_footprints",
@@ -146,21 +182,13 @@ void TilePasses::finish(std::uint32_t step) {
                        [&] { passes::refine_pixels(commands_, plan_.variant, tile_count(plan_), step); });
         copy_saturated_to_host();
     } else if (plan_.variant.mixed && plan_.variant.surfaces) {
-        // Kernels are drawn next; the picture so far is only checked.
+        if (plan_.variant.several && !how_.part)
+            merge(commands_, plan_, plan_.first ? passes::Merge::Begin : passes::Merge::Add);
+        // Other parts are drawn next; the picture so far is only checked.
         for (const gpu::Buffer* seen : {&targets_.output, &targets_.tile_ends})
             commands_.to_host(*seen);
     } else if (!how_.part) {
-        const auto& p = plan_.params;
-        if (plan_.variant.mixed) commands_.span("6_join_surfaces", [&] { passes::join_surfaces(commands_, p.size); });
-        commands_.span("7_resolve", [&] {
-            // A pixel on an outline also blends in its neighbour's colour before this pass.
-            if (plan_.variant.outlines) {
-                commands_.copy(targets_.output, targets_.tile_sheets, {{0, 0, picture_bytes(plan_)}});
-                commands_.barrier();
-            }
-            passes::resolve(commands_, plan_.variant, p.size, plan_.gradient);
-            commands_.to_host(targets_.output);
-        });
+        end_picture(commands_, plan_, targets_);
     }
 }
 

@@ -32,6 +32,10 @@ std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan,
 std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                    passes::TileDraw how);
 
+/// Ends a picture of several volumes without kernels: composites their surfaces and runs pass 7. `plan`: of the part
+/// that was drawn last. Runs and waits.
+std::vector<PassTime> join_volumes(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
+
 /// One step of `draw_tiles` without the passes that follow a step. A refined picture: the pixels of `step`, first at
 /// multiples of REFINE_STEP, then those that 5_refine_pixels lists. Any other picture: all pixels, step 1.
 std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,

@@ -31,7 +31,7 @@ FramePlan PictureDrawer::plan(const CollectedSplats& list, const Scene& scene, c
 }
 
 void PictureDrawer::draw(const CollectedSplats& list, FramePlan plan) {
-    beside_.reset();
+    beside_.clear();
     drawn_before_ = 0;
     counts_before_ = {};
     draw_list(list, std::move(plan));
@@ -46,30 +46,40 @@ void PictureDrawer::draw_list(const CollectedSplats& list, FramePlan plan) {
     if (options_->check_numbers) check_picture(list);
 }
 
-void PictureDrawer::draw_mixed(const CollectedSplats& surfaces, FramePlan of_surfaces, const CollectedSplats& kernels,
-                               FramePlan of_kernels) {
-    of_surfaces.variant.mixed = of_kernels.variant.mixed = true;
+void PictureDrawer::draw_parts(std::vector<PicturePart> parts, bool several_volumes) {
+    beside_.clear();
+    for (PicturePart& part : parts) {
+        part.plan.variant.mixed = true;
+        part.plan.variant.several = several_volumes;
+        part.plan.first = beside_.empty();
+        beside_.push_back(part.plan);
+    }
     drawn_before_ = 0;
     counts_before_ = {};
-    beside_ = of_kernels;
-    draw_list(surfaces, std::move(of_surfaces));
-    const std::uint32_t drawn = splats_drawn();
-    const PictureCounts counted = counts();
-    const std::uint64_t examined = examined_;
-    std::vector<PassTime> times = std::move(times_);
-    beside_ = std::move(plan_);
-    cull_behind(of_kernels, kernels.splats.lists().bricks,
-                targets_.resources().tile_ends.mapped<float>(tile_count(of_kernels)));
-    draw_list(kernels, std::move(of_kernels));
-    drawn_before_ = drawn;
-    counts_before_ = counted;
-    examined_ += examined;
-    add_times(times, times_);
+    std::uint64_t examined = 0;
+    std::vector<PassTime> times;
+    std::vector<float> ends;  // of the tiles' rays, at surfaces of all parts so far
+    for (PicturePart& part : parts) {
+        if (!part.plan.first) {
+            drawn_before_ = splats_drawn();
+            counts_before_ = counts();
+            cull_behind(part.plan, part.list.splats.lists().bricks, ends);
+        }
+        draw_list(part.list, std::move(part.plan));
+        add_times(times, times_);
+        examined += examined_;
+        if (!plan_.variant.surfaces) continue;
+        const auto own = targets_.resources().tile_ends.mapped<float>(tile_count(plan_));
+        ends.resize(own.size(), std::numeric_limits<float>::infinity());
+        std::ranges::transform(ends, own, ends.begin(), [](float a, float b) { return std::min(a, b); });
+    }
+    if (plan_.variant.surfaces) add_times(times, join_volumes(session_->commands(), plan_, targets_.resources()));
+    examined_ = examined;
     times_ = std::move(times);
 }
 
 void PictureDrawer::provide_targets(const CollectedSplats& list) {
-    targets_.provide(plan_, list.splats.lists(), beside_ ? &*beside_ : nullptr);
+    targets_.provide(plan_, list.splats.lists(), beside_);
 }
 
 void PictureDrawer::draw_planned(const CollectedSplats& list) {

@@ -16,6 +16,12 @@ struct PictureCounts {
     double dirty_share = 0;           ///< mean share of the picture that a sheet (tiles) or sheet group (layers) covers
 };
 
+/// A part of a picture: its splats, and its plan.
+struct PicturePart {
+    CollectedSplats list;
+    FramePlan plan;
+};
+
 /// Which splats of a level are culled. Does not change pictures.
 struct Culling {
     bool bricks = true;  ///< culls bricks outside the picture
@@ -44,10 +50,9 @@ class PictureDrawer {
     /// Draws the plan and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the splat if a
     /// number in the splat list or the picture is not finite.
     void draw(const CollectedSplats& splats, FramePlan plan);
-    /// The same for a mixture: draws surface splats, then kernels in front of the surfaces. Times, counts and numbers
-    /// of splats are of both.
-    void draw_mixed(const CollectedSplats& surfaces, FramePlan of_surfaces, const CollectedSplats& kernels,
-                    FramePlan of_kernels);
+    /// The same for several parts: surface splats of a mixture or of several volumes, then, if the last part has them,
+    /// kernels in front of those surfaces. Times, counts and numbers of splats are of all parts.
+    void draw_parts(std::vector<PicturePart> parts, bool several_volumes);
     /// The tiles that the sheets in front of `sheet` (numbered from the eye on) leave unsaturated. Frees the targets.
     OpenTiles open_tiles(const LevelStore& level, const FrameRequest& request, int sheet);
 
@@ -97,9 +102,9 @@ class PictureDrawer {
     Culling culling_;
     std::optional<glm::ivec2> slab_;
     FramePlan plan_;
-    std::optional<FramePlan> beside_;  ///< the plan of a mixture's other part, while one part is drawn
+    std::vector<FramePlan> beside_;  ///< the plans of all parts of the picture, if it has several
     std::uint64_t examined_ = 0;
-    std::uint32_t drawn_before_ = 0;  ///< of the mixture's part that is drawn first, and its counts
+    std::uint32_t drawn_before_ = 0;  ///< of the parts before the last, and their counts
     PictureCounts counts_before_;
     /// expected number of chunks of the next picture, of kernels and of surface splats; 0: unknown
     std::array<std::uint32_t, 2> expected_chunks_{};

@@ -73,12 +73,14 @@ void Targets::provide_images(const FramePlan& plan) {
     });
 }
 
-void Targets::provide(FramePlan& plan, const SplatLists& splats, const FramePlan* beside) {
+void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const FramePlan> beside) {
     auto& p = plan.params;
     const gpu::DeviceProfile& profile = session_->profile();
     // Free what this plan does not need before allocating.
-    for (const TargetBufferRow& row : target_buffer_rows())
-        if (row.bytes(plan, profile) == 0 && !(beside && row.bytes(*beside, profile) > 0)) resources_.*row.buffer = {};
+    for (const TargetBufferRow& row : target_buffer_rows()) {
+        const auto needs = [&](const FramePlan& part) { return row.bytes(part, profile) > 0; };
+        if (!needs(plan) && std::ranges::none_of(beside, needs)) resources_.*row.buffer = {};
+    }
     provide_images(plan);
     if (resources_.footprint_table) fill_table(p.table_depth > 0 ? kFaceDepth : 0);
     p.tile_blocks = tile_blocks(p.tiles, profile);

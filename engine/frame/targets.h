@@ -18,9 +18,9 @@ class Targets {
 
     const TargetResources& resources() const { return resources_; }
     /// Allocates what the plan's passes need, fills in addresses and writes the frame's parameters. Larger resources
-    /// of earlier pictures are reused; those that neither this plan nor `beside` needs are freed. `beside`: the plan of
-    /// the other part of a mixture, else null.
-    void provide(FramePlan& plan, const SplatLists& splats, const FramePlan* beside = nullptr);
+    /// of earlier pictures are reused; those that neither this plan nor `beside` needs are freed. `beside`: the plans
+    /// of the picture's other parts.
+    void provide(FramePlan& plan, const SplatLists& splats, std::span<const FramePlan> beside = {});
     /// Allocates room for the pairs of the largest chunk and writes the chunks.
     void provide_chunks(FramePlan& plan, const Chunks& chunks);
     /// Frees all resources except those that every picture needs.

@@ -103,6 +103,7 @@ struct FramePlan {
     bool wide_marks = false;              ///< a mark covers 4 x 2 pixels (4_mark_pixels)
     bool refined = false;                 ///< some pixels are drawn, others interpolated (5_refine_pixels)
     bool may_refine = false;              ///< `refined` before the splats' sizes are known
+    bool first = true;                    ///< of the parts of a picture that are drawn one after another
     std::uint32_t sheets_per_splat = 1;   ///< upper bound of a splat's entries in the sorted order
     std::uint32_t sort_segments = 1;      ///< number of segments of each of the sort's blocks
     double reach = 0;                     ///< farthest reach of any kernel, voxels

@@ -289,6 +289,14 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(
         text("ends of tiles", "(tiles) float", "5", "host"), &T::tile_ends, &F::tile_ends, Place::Shared, kNoTexels,
         kUnbound, [](const FramePlan& p, const Profile&) { return p.variant.mixed ? tile_count(p) * kWord : 0; }),
+    row<TargetBufferRow>(
+        text("nearest surfaces", "(2, y, x) payload, opacity", "6", "6"), &T::nearest_surfaces, &F::nearest_surfaces,
+        Place::Device, kNoTexels, kUnbound,
+        [](const FramePlan& p, const Profile&) { return p.variant.several ? 2 * picture_bytes(p) : 0; }),
+    row<TargetBufferRow>(
+        text("ways to nearest surfaces", "(2, y, x) float", "6", "6"), &T::nearest_ways, &F::nearest_ways,
+        Place::Device, kNoTexels, kUnbound,
+        [](const FramePlan& p, const Profile&) { return p.variant.several ? 2 * pixels(p) * kWord : 0; }),
 };
 
 gpu::ImageShape texel(gpu::ImageShape kind) {

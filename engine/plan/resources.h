@@ -51,6 +51,7 @@ struct TargetResources {
         outlines;
     gpu::Buffer traced_rays, traced_entries;
     gpu::Buffer seen_surfaces, seen_ways, surfaces_passed, tile_ends;
+    gpu::Buffer nearest_surfaces, nearest_ways;
 };
 
 /// The one descriptor set (shaders/shared/bindings.h). Unused bindings get a placeholder, a 1-texel image or zeros,

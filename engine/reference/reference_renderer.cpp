@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/error.h"
 #include "engine/image/sample_mean.h"
 #include "engine/reference/2b_occlude_ambient.h"
 #include "engine/reference/2c_cast_shadows.h"
@@ -52,10 +53,21 @@ bool is_before(const CarriedEdge& carried, std::size_t voxel) {
     return carried.voxel < voxel;
 }
 
+/// mm per voxel along the ray of a pixel.
+double mm_along(const View& view, std::size_t pixel) {
+    const int number = static_cast<int>(pixel);
+    return glm::length(view.geometry.index_to_world_axes * view.ray(number % view.width, number / view.width));
+}
+
 }  // namespace
 
-PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
-    : PreparedVolume(volume, scene, settings, quantised, scene) {
+PreparedVolume::PreparedVolume(const Volume& volume, const Scene& whole_scene, const Settings& settings, bool quantised)
+    : PreparedVolume(volume, scene_of_volume((validate(whole_scene), whole_scene), 0), settings, quantised,
+                     scene_of_volume(whole_scene, 0)) {
+    for (std::size_t i = 0; i < whole_scene.added.size(); ++i)
+        added_.push_back(std::make_shared<const PreparedVolume>(
+            *whole_scene.added[i].volume, scene_of_volume(whole_scene, i + 1), settings, quantised));
+    const Scene& scene = scene_;
     const auto mixture = mixture_of(settings_, scene_, volume);
     if (!mixture) return;
     const auto part = [&](const Scene& of) {
@@ -115,33 +127,81 @@ void PreparedVolume::replace_edge(std::size_t voxel, int material, const VoxelEd
         if (carried->material == material) carried->edge = edge;
 }
 
+const PreparedVolume* PreparedVolume::opaque_part() const {
+    return opaque_ ? opaque_.get() : surface_scene_ ? this : nullptr;
+}
+
+const PreparedVolume* PreparedVolume::kernel_part() const {
+    return translucent_ ? translucent_.get() : surface_scene_ || !has_matter(scene_) ? nullptr : this;
+}
+
+View PreparedVolume::view_of(const Camera& camera, int width, int height, Output output) const {
+    View view(camera, volume_->geometry, width, height);
+    if (scene_.effects.antialias) view.low_pass = 1.0 / (output == Output::Color ? scene_.effects.samples : 1);
+    return view;
+}
+
+void PreparedVolume::add_surfaces(SurfacePicture& seen, std::span<const SplatRecord> lit, const View& view,
+                                  Output output) const {
+    const SurfacePicture own =
+        draw_surfaces(lit, field(), *surface_scene_, scene_, view, settings_, payload_for(output));
+    seen.pixels.resize(own.pixels.size());
+    seen.outlines.resize(own.outlines.size());
+    for (std::size_t i = 0; i < own.outlines.size(); ++i)
+        if (own.outlines[i]) keep_outer(seen.outlines[i], own.outlines[i]);
+    for (std::size_t i = 0; i < own.pixels.size(); ++i) {
+        const double mm = mm_along(view, i);
+        std::array<SeenSurface, 4> all{seen.pixels[i][0], seen.pixels[i][1], own.pixels[i][0], own.pixels[i][1]};
+        for (std::size_t k = 2; k < 4; ++k)
+            all[k].way *= mm;
+        std::ranges::stable_sort(all, {}, &SeenSurface::way);
+        seen.pixels[i] = {all[0], all[0].solid ? SeenSurface() : all[1]};
+    }
+}
+
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
     check_picture_size(width, height);
-    View view(camera, volume_->geometry, width, height);
-    const int samples = output == Output::Color ? scene_.effects.samples : 1;
-    if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
     // Optical depth needs all voxels.
     const bool whole = output == Output::Tau;
-    const PreparedVolume& front = translucent_ && !whole ? *translucent_ : *this;
-    const PreparedVolume* behind = whole ? nullptr : opaque_ ? opaque_.get() : surface_scene_ ? this : nullptr;
-    const std::vector<SplatRecord> surfaces = behind ? behind->lit_surfaces(output) : std::vector<SplatRecord>{};
+    if (whole && !added_.empty()) fail("output tau: is of one volume, but the scene has several");
+    std::vector<const PreparedVolume*> surfaces;
+    const PreparedVolume* front = whole ? this : kernel_part();
+    if (const PreparedVolume* part = whole ? nullptr : opaque_part()) surfaces.push_back(part);
+    for (const auto& volume : added_) {
+        if (const PreparedVolume* part = volume->opaque_part()) surfaces.push_back(part);
+        if (!front) front = volume->kernel_part();
+    }
+    std::vector<std::vector<SplatRecord>> lit;
+    for (const PreparedVolume* part : surfaces)
+        lit.push_back(part->lit_surfaces(output));
     const std::vector<SplatRecord> kernels =
-        behind == this ? std::vector<SplatRecord>{} : front.lit_kernels(camera.eye, output);
-    const auto drawn = [&] {
-        if (!behind) return draw(kernels, view, output);
-        const SurfacePicture seen = draw_surfaces(surfaces, field(), *behind->surface_scene_, behind->scene_, view,
-                                                  settings_, payload_for(output));
-        if (behind != this) return front.draw(kernels, view, output, &seen);
+        front ? front->lit_kernels(camera.eye, output) : std::vector<SplatRecord>{};
+    const auto drawn = [&](const glm::dvec2& offset) {
+        const auto view_of_part = [&](const PreparedVolume& part) {
+            View view = part.view_of(camera, width, height, output);
+            view.offset = offset;
+            return view;
+        };
+        SurfacePicture seen;
+        for (std::size_t i = 0; i < surfaces.size(); ++i)
+            surfaces[i]->add_surfaces(seen, lit[i], view_of_part(*surfaces[i]), output);
+        if (front) {
+            const View view = view_of_part(*front);
+            for (std::size_t i = 0; i < seen.pixels.size(); ++i)
+                for (SeenSurface& surface : seen.pixels[i])
+                    surface.way /= mm_along(view, i);
+            return front->draw(kernels, view, output, surfaces.empty() ? nullptr : &seen);
+        }
         std::vector<glm::dvec4> frame = composited(seen);
+        frame.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), glm::dvec4(0));
         if (!seen.outlines.empty()) frame = smoothed(frame, seen.outlines, width, height);
         return resolve(frame, width, height, scene_, output);
     };
-    if (samples == 1) return drawn();
+    const int samples = output == Output::Color ? scene_.effects.samples : 1;
+    if (samples == 1) return drawn({0, 0});
     SampleMean mean({width, height});
-    for (const glm::dvec2& offset : sample_offsets(samples)) {
-        view.offset = offset;
-        mean.add(drawn().pixels);
-    }
+    for (const glm::dvec2& offset : sample_offsets(samples))
+        mean.add(drawn(offset).pixels);
     return mean.image();
 }
 

@@ -58,6 +58,13 @@ class PreparedVolume {
     void find_light(std::span<SplatRecord> records) const;
     /// The kernels of passes 2 and 3, with the light that reaches them if `output` shows it.
     std::vector<SplatRecord> lit_kernels(const glm::dvec3& eye, Output output) const;
+    /// The part that surface splats draw, and the one that kernels draw; null if there is none.
+    const PreparedVolume* opaque_part() const;
+    const PreparedVolume* kernel_part() const;
+    /// Adds the surfaces on the view's rays to those of other volumes. Their ways are in mm.
+    void add_surfaces(SurfacePicture& seen, std::span<const SplatRecord> lit, const View& view, Output output) const;
+    /// The view of the same camera in this volume.
+    View view_of(const Camera& camera, int width, int height, Output output) const;
     /// One picture with one ray per pixel, of the scene's splats. `behind`: the surfaces at which rays end, else null.
     Image draw(std::span<const SplatRecord> records, const View& view, Output output,
                const SurfacePicture* behind = nullptr) const;
@@ -75,6 +82,7 @@ class PreparedVolume {
     std::vector<double> classified_;
     Footprints footprints_;
     std::shared_ptr<const PreparedVolume> opaque_, translucent_;  ///< the parts of a mixture, else null
+    std::vector<std::shared_ptr<const PreparedVolume>> added_;    ///< the scene's other volumes
 };
 
 /// All passes at once.

@@ -64,9 +64,40 @@ bool SplatProvider::provide_volume(bool coefficients) {
     return (coefficients && shown_.volume.provide_coefficients()) || missing;
 }
 
-std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& wanted) const {
-    if (shown_.volume.changed()) return std::nullopt;
-    for (const SplatStore* list : {&shown_.splats, &shown_.surfaces})
+void SplatProvider::hold_added(const FrameRequest& request) {
+    std::vector<Added> held;
+    for (const AddedVolume& wanted : request.scene.added) {
+        if (wanted.volume->values.empty())
+            fail("{}: a packed volume is drawn in blocks, expected volumes in memory beside each other",
+                 wanted.volume->name);
+        const auto found =
+            std::ranges::find_if(added_, [&](const Added& one) { return one.levels.original() == wanted.volume; });
+        if (found != added_.end()) {
+            held.push_back(std::move(*found));
+            added_.erase(found);
+        } else {
+            held.emplace_back(*session_).levels.set(wanted.volume);
+        }
+        Added& one = held.back();
+        const int level = level_for(wanted.volume->geometry, one.levels.count(), request.camera, request.size,
+                                    drawn_settings(request).detail);
+        if (one.shown.volume.hold(one.levels.at(level), level)) one.shown.drop_splats();
+    }
+    added_ = std::move(held);
+}
+
+void SplatProvider::show_levels(FrameRequest& request) const {
+    request.volume = shown_.volume.volume();
+    for (std::size_t i = 0; i < added_.size(); ++i)
+        request.scene.added[i].volume = added_[i].shown.volume.volume();
+}
+
+std::optional<SplatCount> SplatProvider::collected_splats(const FrameRequest& part,
+                                                          const CollectionPlan& wanted) const {
+    if (part.number > added_.size()) return std::nullopt;
+    const LevelStore& store = level(part.number);
+    if (store.volume.volume() != part.volume || store.volume.changed()) return std::nullopt;
+    for (const SplatStore* list : {&store.splats, &store.surfaces})
         if (list->collected() && !stale_results(*list->collected(), wanted).lists)
             return SplatCount{SplatCount::From::Frame, list->lists().extent()};
     return std::nullopt;
@@ -74,8 +105,8 @@ std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& 
 
 std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& request) {
     bool known = true;
-    const auto count_at_once = [&](const FrameRequest&, const CollectionPlan& wanted) {
-        const auto collected = collected_splats(wanted);
+    const auto count_at_once = [&](const FrameRequest& part, const CollectionPlan& wanted) {
+        const auto collected = collected_splats(part, wanted);
         known = known && collected;
         return collected.value_or(most_splats(wanted));
     };
@@ -98,15 +129,19 @@ std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& re
 
 void SplatProvider::settle(FrameRequest& request, int finest) {
     use_level(finest);
-    request.volume = shown_.volume.volume();
+    show_levels(request);
     const Volume& volume = *request.volume;
+    const bool several = !added_.empty();
+    if (several && volume.values.empty())
+        fail("{}: a packed volume is drawn in blocks, expected volumes in memory beside each other", volume.name);
     const glm::ivec3 dims = volume.geometry.dims;
     const bool many = std::max({dims.x, dims.y, dims.z}) > kBlockCore;
     const bool wanted = std::isfinite(options_->patience);
-    bool blocks = volume.values.empty() || (wanted && many && volume.geometry.voxel_count() > kCoarseVoxels);
+    bool blocks =
+        volume.values.empty() || (wanted && many && !several && volume.geometry.voxel_count() > kCoarseVoxels);
     if (!blocks) {
         const auto need = memory_shortfall(request);
-        blocks = need && many && most_splats_in_blocks(request).value_or(0) > 0;
+        blocks = need && many && !several && most_splats_in_blocks(request).value_or(0) > 0;
         if (need && !blocks) refuse_memory(session_->device(), request, *need, options_->memory_budget);
     }
     hold_in_blocks(blocks);
@@ -146,16 +181,27 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
 
 double SplatProvider::provide_undivided(const FrameRequest& request) {
     const auto start = Clock::now();
-    std::vector<CollectionPlan> plans;
-    std::ranges::transform(drawn_parts(request), std::back_inserter(plans), planned_collection);
-    const CollectionPlan* opaque = plans.size() > 1 ? &plans.front() : nullptr;
-    const bool found = shown_.provide(plans.back(), opaque, request.scene, cost_);
+    bool found = false;
+    for (std::size_t number = 0; number <= added_.size(); ++number) {
+        const FrameRequest one = request_of_volume(request, number);
+        LevelStore& store = number == 0 ? shown_ : added_[number - 1].shown;
+        // A volume without matter beside others has no part.
+        if (!added_.empty() && !has_matter(one.scene)) {
+            store.drop_splats();
+            continue;
+        }
+        std::vector<CollectionPlan> plans;
+        std::ranges::transform(parts_of_volume(one), std::back_inserter(plans), planned_collection);
+        const CollectionPlan* opaque = plans.size() > 1 ? &plans.front() : nullptr;
+        found = store.provide(plans.back(), opaque, one.scene, cost_) || found;
+    }
     return found ? milliseconds_since(start) : 0;
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
     cost_ = {.times = {}, .voxels_estimated = 0, .progress = options_->progress, .kept = options_->kept_splats};
     if (other_.volume.volume()) std::swap(shown_, other_);  // resume the unfinished level
+    hold_added(request);
     stats.wanted_level =
         level_for(original()->geometry, levels_.count(), request.camera, request.size, drawn_settings(request).detail);
     if (provide_level(request, stats.wanted_level, options_->patience, stats) == Gathered::All) {

@@ -23,6 +23,12 @@ class SplatProvider {
     const std::shared_ptr<const Volume>& original() const { return levels_.original(); }
     /// The level that pictures show.
     const LevelStore& level() const { return shown_; }
+    /// The same of one of several volumes (FrameRequest::number).
+    const LevelStore& level(std::size_t number) const { return number == 0 ? shown_ : added_[number - 1].shown; }
+    /// The splats of a part of a picture.
+    CollectedSplats list_of(const FrameRequest& part) const {
+        return part.mixed && !part.whole ? level(part.number).opaque() : level(part.number).all();
+    }
 
     /// Provides a picture's splats, or those of a coarser level while they are still being collected. Throws Error.
     void provide(const FrameRequest& request, RenderStats& stats);
@@ -33,8 +39,10 @@ class SplatProvider {
     /// Frees resources that pictures with these settings do not use.
     void release_unused(const Settings& drawn);
 
-    /// The collected splats; nullopt if they are not those of the plan.
-    std::optional<SplatCount> collected_splats(const CollectionPlan& wanted) const;
+    /// The collected splats of a part; nullopt if they are not those of the plan.
+    std::optional<SplatCount> collected_splats(const FrameRequest& part, const CollectionPlan& wanted) const;
+    /// Sets the volumes of a request to the levels that pictures show.
+    void show_levels(FrameRequest& request) const;
     /// Forgets the last memory check; call after the memory budget changed.
     void forget_checked() { checked_.clear(); }
 
@@ -42,7 +50,16 @@ class SplatProvider {
     /// Result of collecting a picture's splats.
     enum class Gathered { All, Unfinished, TooMany };
 
+    /// A volume beside the first one.
+    struct Added {
+        explicit Added(DeviceSession& session) : shown(session) {}
+        VolumeLevels levels;
+        LevelStore shown;
+    };
+
     bool take_changes(const std::shared_ptr<const Volume>& next);
+    /// Holds the scene's added volumes, each at the level that its size in the picture requires, and no others.
+    void hold_added(const FrameRequest& request);
     void use_level(int level);
     void hold_in_blocks(bool blocks);
     /// Selects the level `finest`, and whether it is on the device as a whole or in blocks. Sets `request.volume` to
@@ -55,7 +72,7 @@ class SplatProvider {
     /// Maximum number of splats that fit with the volume in blocks; nullopt if not even 0 splats fit.
     std::optional<std::uint64_t> most_splats_in_blocks(const FrameRequest& request) const;
 
-    /// Runs passes 1 to 2d for the volume as a whole. Returns the time in ms, 0 if none ran.
+    /// Runs passes 1 to 2d for the volumes as a whole. Returns the time in ms, 0 if none ran.
     double provide_undivided(const FrameRequest& request);
     /// Runs passes 1 to 2d block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
@@ -88,6 +105,7 @@ class SplatProvider {
     std::optional<RaycastResources>* rays_;
     VolumeLevels levels_;
     LevelStore shown_;
+    std::vector<Added> added_;     ///< in the order of the scene
     LevelStore other_;             ///< a level being collected while a coarser one is shown; empty: none
     SetupCost cost_;               ///< of the picture being provided
     bool divides_blocks_ = false;  ///< all parts of the picture have the volume in blocks

@@ -23,6 +23,8 @@ struct FrameRequest {
     AovRequest outputs;
     /// All matter, if the request is of the translucent part of a mixture. Rays end at the opaque one.
     std::optional<Scene> whole{};
+    std::size_t number = 0;  ///< of its volume (scene_of_volume), if the request is of one of several
+    bool mixed = false;      ///< the request is of a part of a mixture
 };
 
 }  // namespace edgesplat

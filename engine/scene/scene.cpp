@@ -99,6 +99,7 @@ Light directional_light(const glm::dvec3& towards) {
 
 std::string raycast_obstacle(const Scene& scene) {
     const Effects& effects = scene.effects;
+    if (!scene.added.empty()) return "several volumes";
     if (scene.lights.size() > 1) return "more than one light";
     for (const Light& light : scene.lights) {
         if (light.kind == Light::Kind::Point) return "a point light";
@@ -118,7 +119,39 @@ std::string raycast_obstacle(const Scene& scene) {
     return "";
 }
 
+Scene scene_of_volume(const Scene& scene, std::size_t number) {
+    Scene one = scene;
+    one.added.clear();
+    if (number > 0) {
+        const AddedVolume& added = scene.added[number - 1];
+        one.iso_values = added.iso_values;
+        one.materials = added.materials;
+        one.transfer = added.transfer;
+        one.label_colors = added.label_colors;
+        one.clipped = added.clipped;
+    }
+    if (!one.clipped) one.effects.clip = {};
+    one.clipped = true;
+    return one;
+}
+
+bool has_matter(const Scene& scene) {
+    const auto absorbs = [](const auto& at) { return at.extinction > 0; };
+    return scene.transfer.empty() ? std::ranges::any_of(scene.materials, absorbs)
+                                  : std::ranges::any_of(scene.transfer, absorbs);
+}
+
 void validate(const Scene& scene) {
+    if (scene.added.size() >= kMaxVolumes)
+        fail("scene volumes: {} volumes, expected at most {}", scene.added.size() + 1, kMaxVolumes);
+    for (std::size_t i = 0; i < scene.added.size(); ++i) {
+        if (!scene.added[i].volume) fail("scene volumes[{}]: it has no samples; expected a volume that is read", i);
+        try {
+            validate(scene_of_volume(scene, i + 1));
+        } catch (const Error& error) {
+            fail("volumes[{}]: {}", i, error.what());
+        }
+    }
     const std::size_t count = scene.iso_values.size(), fewest = scene.transfer.empty() ? 1 : 0;
     if (count < fewest || count > kMaxIsoValues) {
         fail("scene iso_values: {} values, expected {} to {}", count, fewest, kMaxIsoValues);

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/scene/effects.h"
 
 namespace edgesplat {
+
+struct Volume;
 
 /// Reflection coefficients of a material: factors on the lights' intensity.
 struct LightResponse {
@@ -62,6 +65,19 @@ inline constexpr std::size_t kMaxLights = 4;
 inline constexpr std::size_t kMaxShadowLights = 2;
 inline constexpr std::size_t kMaxIsoValues = 15;
 inline constexpr std::size_t kMaxTransferPoints = 256;
+inline constexpr std::size_t kMaxVolumes = 16;
+
+/// A volume beside a scene's first one, with its own matter. Lights, effects and background are the scene's.
+struct AddedVolume {
+    std::shared_ptr<const Volume> volume;  ///< its geometry places it in the world
+    // As in Scene.
+    std::vector<double> iso_values;
+    std::vector<Material> materials;
+    std::vector<TransferPoint> transfer;
+    std::vector<glm::dvec3> label_colors;
+    bool clipped = true;
+    bool operator==(const AddedVolume&) const = default;
+};
 
 /// A scene. Material m has the values v with m = number of iso-values <= v.
 struct Scene {
@@ -77,7 +93,15 @@ struct Scene {
     Lit lit = Lit::Everywhere;
     glm::dvec3 background{0, 0, 0};  ///< linear light
     Effects effects;
+    bool clipped = true;             ///< whether clip planes cut the first volume
+    std::vector<AddedVolume> added;  ///< at most kMaxVolumes - 1
 };
+
+/// The scene with one of its volumes alone. `number`: 0 is the first, the others follow in the order of `added`.
+Scene scene_of_volume(const Scene& scene, std::size_t number);
+
+/// Whether some value is matter.
+bool has_matter(const Scene& scene);
 
 /// The first feature of the scene that ray casting and the truth renderer do not support; empty: none. They support
 /// measured values with transfer functions, materials without specular reflection, one headlight or directional white

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@
 
 namespace edgesplat {
 
-/// The volume and its preprocessing: threshold or labels, box filter, crop, in this order.
+/// The volume, its preprocessing (threshold or labels, box filter, crop, in this order) and its place in the scene.
 struct VolumeSource {
     std::string path;                               ///< file, folder, pattern of slices, or builtin:NAME
     std::string raw, series;                        ///< see LoadOptions; empty: not given
@@ -33,7 +34,10 @@ struct VolumeSource {
     std::string label_names;                        ///< file with names and colours of labels; empty: none
     bool box_filter = false;                        ///< mean over 3x3x3 voxels
     std::optional<glm::ivec3> crop_low, crop_high;  ///< first and last voxel kept; both or none
-    std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
+    std::vector<double> transform;  ///< 4 x 4, row by row: moves the volume in the world; empty: not moved
+    bool visible = true;            ///< whether its matter is drawn
+    bool clip = true;               ///< whether the scene's clip planes cut it
+    std::string checksum;           ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
     bool operator==(const VolumeSource&) const = default;
 };
 
@@ -117,6 +121,13 @@ struct ClipBox {
     bool operator==(const ClipBox&) const = default;
 };
 
+/// A volume that was read for a document, and what it was read from.
+struct ReadVolume {
+    VolumeSource source;
+    std::vector<double> iso_values;
+    std::shared_ptr<const Volume> volume;
+};
+
 struct SceneDocument {
     std::string about;  ///< description in words
     VolumeSource volume;
@@ -137,6 +148,9 @@ struct SceneDocument {
     MovieChoice movie;
     QualityChoice quality;
     OutputChoice output;
+    /// Volumes beside the first one. Of each only the volume and its matter count (kAddedKeys).
+    std::vector<SceneDocument> volumes;
+    std::shared_ptr<const ReadVolume> read;  ///< of an entry of `volumes` (read_volumes)
     bool operator==(const SceneDocument&) const = default;
 };
 
@@ -187,11 +201,16 @@ Volume prepared_volume(SceneDocument& document, Volume volume);
 /// If the document leaves its iso-values to statistics of the volume, makes those for this volume the document's.
 void set_open_iso_values(SceneDocument& document, const Volume& volume);
 
+/// Reads and preprocesses the volumes beside the first one that are not read yet, or whose source has changed. Throws
+/// Error naming the volume.
+void read_volumes(SceneDocument& document, const std::vector<std::filesystem::path>& folders,
+                  const LoadProgress& progress = {});
+
 /// Names the labels of a volume from a file (read_label_names). Throws Error if it is no segmentation.
 void name_labels(Volume& volume, const std::filesystem::path& path);
 
-/// Preprocesses a volume as `load_source` does: threshold or labels, box filter, crop, in this order; then verifies the
-/// checksum. Throws Error.
+/// Preprocesses a volume as `load_source` does: threshold or labels, box filter, crop, in this order; moves it, then
+/// verifies the checksum. Throws Error.
 Volume preprocessed(Volume volume, const VolumeSource& source);
 
 /// Decides whether the labels of a volume from `read_source` are drawn, each in its own colour, and sets
@@ -206,7 +225,7 @@ void choose_labels(SceneDocument& document, const Volume& volume);
 /// presets; the builtin scene; 0.5 after a threshold and for drawn labels; the strongest suggestion for the volume.
 /// Drawn labels have the colours of their table, by default one by number; with a material's colour all have that.
 /// Omitted extinctions: 8 per voxel of mean spacing for the highest material, 0.15 for those below it, 0 below the
-/// lowest iso-value. Throws Error.
+/// lowest iso-value. Its other volumes must be read (read_volumes). Throws Error.
 Scene resolve_scene(const SceneDocument& document, const Volume& volume);
 
 /// The camera for the size in `document.output`. By default: front of a builtin volume and of a patient (top if that is

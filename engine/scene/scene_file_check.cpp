@@ -28,6 +28,9 @@ class Checker {
         check_camera();
         check_movie();
         check_output();
+        for (std::size_t i = 0; i < d_.volumes.size(); ++i)
+            for (const DocumentProblem& problem : problems_of(d_.volumes[i], folders_))
+                problems_.push_back({fmt::format("volumes[{}].{}", i, problem.path), problem.text});
         return std::move(problems_);
     }
 
@@ -226,6 +229,8 @@ class Checker {
         if (!o.aovs.empty() && o.compare_raycast) add("output.compare_raycast", "true: expected no aovs beside it");
         if (o.compare_raycast && o.renderer != RendererKind::Splat)
             add("output.compare_raycast", "true: expected renderer \"splat\"");
+        if (o.renderer == RendererKind::Truth && !d_.volumes.empty())
+            add("output.renderer", "\"truth\" draws one volume; expected \"splat\" or \"reference\"");
         if (o.renderer == RendererKind::Truth && !is_builtin(d_.volume.path) && !d_.volume.path.empty())
             add("output.renderer", "\"truth\" needs the exact scene, which only builtin:NAME volumes have");
         if (o.renderer != RendererKind::Splat && d_.quality.max_error)

@@ -38,7 +38,9 @@ struct Assignment {
 /// Reads a TOML tree with the table of keys.
 class Reader {
   public:
-    Reader(SceneDocument& document, bool preset) : document_(document), preset_(preset) {
+    /// `added`: the document is an entry of `volumes`.
+    Reader(SceneDocument& document, bool preset, bool added = false)
+        : document_(document), preset_(preset), added_(added) {
         for (const SceneKey& key : scene_keys())
             for (std::string path = table_of(key); !path.empty();
                  path.resize(path.rfind('.') == std::string::npos ? 0 : path.rfind('.')))
@@ -87,6 +89,11 @@ class Reader {
         if (preset_ && !for_presets && (groups_.contains(top) || find_key(top)))
             return add_problem(line, concrete,
                                fmt::format("is not for presets; allowed are {}", fmt::join(kPresetKeys, ", ")));
+        if (added_ && !is_of_added(generic))
+            return add_problem(
+                line, concrete,
+                fmt::format("is not for one volume of several; allowed are {}", fmt::join(kAddedKeys, ", ")));
+        if (!preset_ && generic == "volumes") return read_added(node, concrete, line);
         if (const SceneTable* table = find_table(generic)) return read_group(*table, node, concrete, line);
         if (const SceneKey* key = find_key(generic)) return read_key(*key, node, concrete, index, line);
         if (groups_.contains(generic)) {
@@ -130,6 +137,29 @@ class Reader {
             const std::string entry = fmt::format("{}[{}]", concrete, i);
             lines_[entry] = (*array)[i].source().begin.line;
             read_table(*(*array)[i].as_table(), entry, group.path + "[]", i);
+        }
+    }
+
+    void read_added(const toml::node& node, const std::string& concrete, std::size_t line) {
+        const toml::array* array = node.as_array();
+        const bool tables = array && std::all_of(array->begin(), array->end(), [](auto& n) { return n.is_table(); });
+        if (!tables)
+            return add_problem(line, concrete,
+                               text_of(node) + ": expected a list of tables, each begun by [[volumes]]");
+        if (array->size() >= kMaxVolumes)
+            return add_problem(line, concrete,
+                               fmt::format("{} entries: expected at most {}", array->size(), kMaxVolumes - 1));
+        document_.volumes.assign(array->size(), {});
+        for (std::size_t i = 0; i < array->size(); ++i) {
+            const std::string entry = fmt::format("{}[{}]", concrete, i);
+            lines_[entry] = (*array)[i].source().begin.line;
+            Reader reader(document_.volumes[i], false, true);
+            reader.read_table(*(*array)[i].as_table(), "", "", 0);
+            reader.apply();
+            for (const auto& [path, at] : reader.lines_)
+                lines_[entry + "." + path] = at;
+            for (const Problem& problem : reader.problems_)
+                add_problem(problem.line, "", entry + "." + problem.text);
         }
     }
 
@@ -193,7 +223,7 @@ class Reader {
     }
 
     SceneDocument& document_;
-    bool preset_;
+    bool preset_, added_;
     std::set<std::string> groups_;  ///< tables with keys, and their parents
     std::map<std::string, std::size_t> lines_;
     std::vector<Assignment> assignments_;
@@ -298,6 +328,27 @@ toml::table node_of(const SceneKey* key, std::string text) {
 
 }  // namespace
 
+namespace {
+
+/// Sets a key of an entry of `volumes`; the first one behind the last is made. `rest`: "=VALUE".
+void set_added(SceneDocument& document, const std::pair<std::size_t, std::string_view>& address,
+               std::string_view rest) {
+    const auto& [number, key] = address;
+    if (number > document.volumes.size() || number + 1 >= kMaxVolumes)
+        fail("volumes[{}]: there are {} volumes beside the first, expected an index from 0 to {}", number,
+             document.volumes.size(), std::min(document.volumes.size(), kMaxVolumes - 2));
+    SceneDocument entry = number < document.volumes.size() ? document.volumes[number] : SceneDocument{};
+    try {
+        set_key(entry, std::string(key) + std::string(rest));
+    } catch (const Error& error) {
+        fail("volumes[{}].{}", number, error.what());
+    }
+    if (number == document.volumes.size()) document.volumes.emplace_back();
+    document.volumes[number] = std::move(entry);
+}
+
+}  // namespace
+
 void set_key(SceneDocument& document, std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos || equals == 0)
@@ -306,10 +357,12 @@ void set_key(SceneDocument& document, std::string_view assignment) {
     if (const std::size_t bad = invalid_utf8(assignment); bad != std::string_view::npos)
         fail("{}: byte {} is not valid UTF-8", assignment.substr(0, equals), bad);
     const std::string path(assignment.substr(0, equals)), text(assignment.substr(equals + 1));
+    if (const auto added = added_address(path)) return set_added(document, *added, assignment.substr(equals));
+    const bool all_volumes = path == "volumes";
     const KeyAddress address = key_address(path);
     const SceneKey* key = find_key(address.path);
     const SceneTable* table = find_table(address.path);
-    if (!key && !table) fail("{}: {}", path, unknown_key(path));
+    if (!key && !table && !all_volumes) fail("{}: {}", path, unknown_key(path));
     if (address.component && key) {
         double value = 0;
         std::istringstream in(text);
@@ -344,6 +397,8 @@ void set_key(SceneDocument& document, std::string_view assignment) {
 }
 
 void animate_number(SceneDocument& document, std::string_view key, double value) {
+    if (const auto added = added_address(key); added && added->first < document.volumes.size())
+        return animate_number(document.volumes[added->first], added->second, value);
     const SceneKey* entry = find_key(key_address(key).path);
     const bool whole = entry && (entry->type == KeyType::Integer || entry->type == KeyType::Integers);
     const double number = whole ? std::round(value) : value;

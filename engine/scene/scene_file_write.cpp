@@ -50,9 +50,9 @@ const SceneTable* group_of(const std::string& table) {
     return find_table(table.ends_with("[]") ? table.substr(0, table.size() - 2) : table);
 }
 
-std::string header_of(const std::string& table) {
-    if (table.ends_with("[]")) return "[[" + table.substr(0, table.size() - 2) + "]]";
-    return "[" + table + "]";
+std::string header_of(const std::string& table, const std::string& before = "") {
+    if (table.ends_with("[]")) return "[[" + before + table.substr(0, table.size() - 2) + "]]";
+    return "[" + before + table + "]";
 }
 
 /// Writes lists that are empty although their default is not: table headers cannot express this.
@@ -101,6 +101,7 @@ std::string example_of(const SceneKey& key) {
         case KeyType::Integer:
             return "0";
         default:
+            if (key.count == 16) return "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
             return key.points ? "[[0, 0, 0], [1, 1, 1]]" : key.count == 3 ? "[0, 0, 0]" : "[0]";
     }
 }
@@ -112,23 +113,40 @@ void check_path_is_text(const SceneDocument& document) {
         fail("volume: {}: its name is not UTF-8, which scene files require", document.volume.path);
 }
 
-std::string scene_text(const SceneDocument& document) {
+namespace {
+
+/// The keys that are set, below the table `before` ("volumes." for an entry of that list).
+std::string keys_text(const SceneDocument& document, const std::string& before) {
     std::string out;
     for (const auto& keys : sections()) {
+        if (!before.empty() && !is_of_added(keys.front().path) && !table_of(keys.front()).empty()) continue;
         const std::string table = table_of(keys.front());
         const SceneTable* group = group_of(table);
         const std::size_t count = group ? group->count(document) : 1;
         for (std::size_t i = 0; i < count; ++i) {
             std::string body;
             for (const SceneKey& key : keys)
-                if (const auto value = key.get(document, i))
+                if (const auto value = key.get(document, i); value && (before.empty() || is_of_added(key.path)))
                     body += fmt::format("{} = {}\n", leaf_of(key.path), spelled(key, *value));
-            if (!table.empty() && (group || !body.empty())) out += "\n" + header_of(table) + "\n";
+            if (!table.empty() && (group || !body.empty())) out += "\n" + header_of(table, before) + "\n";
             out += body;
         }
-        if (table.empty()) out += empty_lists(document);
+        if (table.empty() && before.empty()) out += empty_lists(document);
     }
     return out;
+}
+
+std::string added_text(const SceneDocument& document) {
+    std::string out;
+    for (const SceneDocument& entry : document.volumes)
+        out += "\n[[volumes]]\n" + keys_text(entry, "volumes.");
+    return out;
+}
+
+}  // namespace
+
+std::string scene_text(const SceneDocument& document) {
+    return keys_text(document, "") + added_text(document);
 }
 
 std::string commented_scene_text(const SceneDocument& document) {
@@ -155,7 +173,8 @@ std::string commented_scene_text(const SceneDocument& document) {
         }
         if (table.empty()) out += empty_lists(document);
     }
-    return out;
+    out += "\n" + wrapped_comment(std::string(kAddedHelp) + ".");
+    return out + (document.volumes.empty() ? "# [[volumes]]\n" : added_text(document));
 }
 
 std::string scene_keys_text() {
@@ -168,7 +187,7 @@ std::string scene_keys_text() {
             out += fmt::format("{}\n    {}\n    {}; default: {}\n", key.path, key.help, key.expectation(),
                                default_text(key));
     }
-    return out;
+    return out + fmt::format("\n[[volumes]]  {}\n", kAddedHelp);
 }
 
 std::string scene_keys_markdown() {
@@ -188,7 +207,7 @@ std::string scene_keys_markdown() {
             out += fmt::format("| `{}` | {} | {} | {} |\n", leaf_of(key.path), cell(key.help), cell(key.expectation()),
                                cell(key.default_value ? "`" + default_text(key) + "`" : key.absent));
     }
-    return out;
+    return out + fmt::format("\n### `[[volumes]]`\n\n{}.\n", kAddedHelp);
 }
 
 }  // namespace edgesplat

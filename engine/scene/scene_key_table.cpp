@@ -86,6 +86,13 @@ void add_volume(KeyTable& t) {
           {.unit = "voxels", .help = "Step 3: crop, first voxel to keep", .range = {0, 65535}, .absent = "the first"});
     t.add("volume.crop_high", MEMBER(volume.crop_high),
           {.unit = "voxels", .help = "Last voxel to keep", .range = {0, 65535}, .absent = "the last"});
+    t.add("volume.transform", MEMBER(volume.transform),
+          {.count = 16,
+           .unit = "mm",
+           .help = "A 4 x 4 matrix, row by row, that moves the volume in the world",
+           .absent = "the file's place"});
+    t.add("volume.visible", MEMBER(volume.visible), {.help = "Draw the volume's matter"});
+    t.add("volume.clip", MEMBER(volume.clip), {.help = "Clip planes cut the volume"});
     t.add("volume.checksum", MEMBER(volume.checksum),
           {.help = "Checksum of the preprocessed samples; other samples are refused", .absent = "any"});
 }

@@ -146,6 +146,33 @@ const SceneTable* find_table(std::string_view path) {
     return found == tables.end() ? nullptr : &*found;
 }
 
+bool is_of_added(std::string_view path) {
+    return std::ranges::count(kAddedKeys, path.substr(0, path.find_first_of(".["))) > 0;
+}
+
+std::optional<std::pair<std::size_t, std::string_view>> added_address(std::string_view path) {
+    constexpr std::string_view kList = "volumes[";
+    if (!path.starts_with(kList)) return std::nullopt;
+    std::size_t number = 0;
+    const auto [next, error] = std::from_chars(path.data() + kList.size(), path.data() + path.size(), number);
+    const std::string_view rest = path.substr(static_cast<std::size_t>(next - path.data()));
+    if (error != std::errc() || !rest.starts_with("].") || !is_of_added(rest.substr(2)))
+        fail("{}: expected volumes[NUMBER].KEY, with a key of one of: {}", path, fmt::join(kAddedKeys, ", "));
+    return std::pair(number, rest.substr(2));
+}
+
+namespace {
+
+/// The document of an entry of `volumes`. Throws Error if there is none.
+template <typename Document>
+Document& added_entry(Document& document, std::size_t number) {
+    if (number >= document.volumes.size())
+        fail("volumes[{}]: the scene has {} volumes beside the first", number, document.volumes.size());
+    return document.volumes[number];
+}
+
+}  // namespace
+
 KeyAddress key_address(std::string_view concrete) {
     KeyAddress address;
     std::string_view rest = concrete;
@@ -250,12 +277,15 @@ std::string toml_text(const KeyValue& value, KeyType type) {
 }
 
 double number_at(const SceneDocument& document, std::string_view key) {
+    if (const auto added = added_address(key)) return number_at(added_entry(document, added->first), added->second);
     const KeyAddress address = key_address(key);
     KeyValue value = value_at(document, address, key).second;
     return number_in(value, address, key);
 }
 
 void set_number(SceneDocument& document, std::string_view key, double number) {
+    if (const auto added = added_address(key))
+        return set_number(added_entry(document, added->first), added->second, number);
     const KeyAddress address = key_address(key);
     auto [entry, value] = value_at(document, address, key);
     number_in(value, address, key) = number;

@@ -2,6 +2,7 @@
 // command line and animated parameters use it.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -60,6 +61,19 @@ struct SceneTable {
     std::function<std::size_t(const SceneDocument&)> count;
     std::function<void(SceneDocument&, std::size_t count)> resize;
 };
+
+/// The keys at the top of an entry of `volumes`, each with all that is below it.
+inline constexpr std::array<std::string_view, 7> kAddedKeys{"iso_values", "iso_sigmas", "transfer_preset", "volume",
+                                                            "materials",  "below",      "transfer"};
+inline constexpr std::string_view kAddedHelp =
+    "A volume beside the first one, with the keys of its own volume and matter: iso_values, iso_sigmas, "
+    "transfer_preset, [volumes.volume], [[volumes.materials]], [volumes.below], [[volumes.transfer]]";
+
+/// Whether the key may stand in an entry of `volumes`.
+bool is_of_added(std::string_view path);
+
+/// "volumes[2].iso_values[0]" -> 2 and "iso_values[0]"; nullopt for other paths.
+std::optional<std::pair<std::size_t, std::string_view>> added_address(std::string_view path);
 
 /// All keys, in the order of files. Keys of one table are adjacent; keys without a table come first.
 std::span<const SceneKey> scene_keys();

@@ -192,7 +192,10 @@ void write_out_materials(SceneDocument& document, const Scene& scene, const Volu
         document.materials.push_back(choice_of(scene.materials[m]));
 }
 
-Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
+namespace {
+
+/// The scene of a document's first volume. `number`: of the volume; each has other default colours.
+Scene resolved_alone(const SceneDocument& document, const Volume& volume, std::size_t number) {
     Scene scene;
     scene.transfer = document.transfer;
     std::vector<double> iso = document.iso_values;
@@ -231,7 +234,8 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     scene.materials.push_back(material_of(document.below, {.color = glm::dvec3(0)}));
     for (std::size_t rank = 0; rank < order.size(); ++rank) {
         const bool highest = rank + 1 == order.size();
-        const Material usual{.color = default_color(rank), .extinction = default_extinction(highest, volume.geometry)};
+        const Material usual{.color = default_color(number + rank),
+                             .extinction = default_extinction(highest, volume.geometry)};
         scene.iso_values.push_back(iso[order[rank]]);
         scene.materials.push_back(document.materials.empty() ? usual
                                                              : material_of(document.materials[order[rank]], usual));
@@ -244,6 +248,32 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     Clip& clip = scene.effects.clip;
     if (document.keep_box) add_planes(*document.keep_box, clip.keep);
     if (document.remove_box) add_planes(*document.remove_box, clip.remove);
+    scene.clipped = document.volume.clip;
+    if (!document.volume.visible) {
+        for (Material& material : scene.materials)
+            material.extinction = 0;
+        for (TransferPoint& point : scene.transfer)
+            point.extinction = 0;
+    }
+    return scene;
+}
+
+}  // namespace
+
+Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
+    Scene scene = resolved_alone(document, volume, 0);
+    for (std::size_t i = 0; i < document.volumes.size(); ++i) {
+        const SceneDocument& entry = document.volumes[i];
+        if (!entry.read) fail("volumes[{}]: {} is not read", i, entry.volume.path);
+        try {
+            Scene one = resolved_alone(entry, *entry.read->volume, i + 1);
+            scene.added.push_back({entry.read->volume, std::move(one.iso_values), std::move(one.materials),
+                                   std::move(one.transfer), std::move(one.label_colors), one.clipped});
+        } catch (const Error& error) {
+            fail("volumes[{}]: {}", i, error.what());
+        }
+    }
+    if (scene.added.empty()) scene = scene_of_volume(scene, 0);
     validate(scene);
     return scene;
 }
@@ -311,16 +341,45 @@ std::vector<AnimatedParameter> resolve_animation(const SceneDocument& document) 
     return parameters;
 }
 
+namespace {
+
+void write_out_matter(SceneDocument& document, const Scene& scene, const Volume& volume) {
+    document.volume.checksum = fmt::format("{:016x}", volume.checksum);
+    write_out_materials(document, scene, volume);
+    document.iso_sigmas.clear();
+    document.transfer = scene.transfer;
+    for (TransferPoint& point : document.transfer)
+        point.value = volume.in_file_unit(point.value);
+    document.transfer_preset.clear();
+}
+
+}  // namespace
+
 SceneDocument resolved(const SceneDocument& document, const Volume& volume, const Scene& scene, const Camera& camera,
                        const Settings& settings) {
     SceneDocument result = document;
-    result.volume.checksum = fmt::format("{:016x}", volume.checksum);
-    write_out_materials(result, scene, volume);
-    result.iso_sigmas.clear();
-    result.transfer = scene.transfer;
-    for (TransferPoint& point : result.transfer)
-        point.value = volume.in_file_unit(point.value);
-    result.transfer_preset.clear();
+    const auto all = [&](bool VolumeSource::*flag) {
+        return document.volume.*flag &&
+               std::ranges::all_of(document.volumes, [&](const SceneDocument& d) { return d.volume.*flag; });
+    };
+    if (!all(&VolumeSource::visible) || !all(&VolumeSource::clip)) {
+        // What is not shown keeps its matter, and planes that do not cut stay.
+        SceneDocument shown = document;
+        shown.volume.visible = shown.volume.clip = true;
+        for (SceneDocument& entry : shown.volumes)
+            entry.volume.visible = entry.volume.clip = true;
+        result = resolved(shown, volume, resolve_scene(shown, volume), camera, settings);
+        result.volume.visible = document.volume.visible;
+        result.volume.clip = document.volume.clip;
+        for (std::size_t i = 0; i < result.volumes.size(); ++i) {
+            result.volumes[i].volume.visible = document.volumes[i].volume.visible;
+            result.volumes[i].volume.clip = document.volumes[i].volume.clip;
+        }
+        return result;
+    }
+    write_out_matter(result, scene, volume);
+    for (std::size_t i = 0; i < result.volumes.size(); ++i)
+        write_out_matter(result.volumes[i], scene_of_volume(scene, i + 1), *scene.added[i].volume);
     result.ambient = scene.ambient;
     result.lights = scene.lights;
     result.lit = scene.lit;

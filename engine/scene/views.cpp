@@ -111,6 +111,12 @@ std::vector<glm::dvec3> framed_points(const ViewRequest& request) {
         for (glm::dvec3& point : points)
             point = analysed->geometry.to_world(point);
     }
+    if (request.fill && request.scene)
+        for (std::size_t i = 0; i < request.scene->added.size(); ++i) {
+            const Volume& added = *request.scene->added[i].volume;
+            for (const glm::dvec3& point : seen_points(added, scene_of_volume(*request.scene, i + 1)))
+                points.push_back(added.geometry.to_world(point));
+        }
     for (int corner = 0; points.size() < 8 && corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
         points.push_back(volume.geometry.to_world(side * glm::dvec3(volume.geometry.dims) - 0.5));

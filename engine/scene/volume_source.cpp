@@ -1,5 +1,6 @@
 // Finds, loads and preprocesses a scene's volume.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 
@@ -106,7 +107,29 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
 }
 
 Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
-    return prepared_volume(document, read_source(document.volume, folders, progress));
+    Volume volume = prepared_volume(document, read_source(document.volume, folders, progress));
+    read_volumes(document, folders, progress);
+    return volume;
+}
+
+void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
+    const auto what_is_read = [](const SceneDocument& entry) {
+        VolumeSource source = entry.volume;
+        source.visible = source.clip = true;
+        return std::pair(source, entry.iso_values);
+    };
+    for (std::size_t i = 0; i < document.volumes.size(); ++i) {
+        SceneDocument& entry = document.volumes[i];
+        if (entry.read && std::pair(entry.read->source, entry.read->iso_values) == what_is_read(entry)) continue;
+        try {
+            Volume volume = prepared_volume(entry, read_source(entry.volume, folders, progress));
+            const auto [source, iso_values] = what_is_read(entry);
+            entry.read = std::make_shared<const ReadVolume>(
+                ReadVolume{source, iso_values, std::make_shared<const Volume>(std::move(volume))});
+        } catch (const Error& error) {
+            fail("volumes[{}]: {}", i, error.what());
+        }
+    }
 }
 
 void set_open_iso_values(SceneDocument& document, const Volume& volume) {
@@ -176,6 +199,22 @@ void put_numbers(Volume& volume) {
 
 }  // namespace
 
+namespace {
+
+/// Moves a volume by a 4 x 4 matrix, row by row.
+void move(VolumeGeometry& geometry, const std::vector<double>& matrix) {
+    const glm::dmat3 axes(matrix[0], matrix[4], matrix[8], matrix[1], matrix[5], matrix[9], matrix[2], matrix[6],
+                          matrix[10]);
+    const double volume = glm::determinant(axes);
+    const bool affine = matrix[12] == 0 && matrix[13] == 0 && matrix[14] == 0 && matrix[15] == 1;
+    if (!affine || volume == 0 || !std::isfinite(volume))
+        fail("volume.transform: expected a 4 x 4 matrix that can be inverted, with 0, 0, 0, 1 as its last row");
+    geometry.origin = axes * geometry.origin + glm::dvec3(matrix[3], matrix[7], matrix[11]);
+    geometry.index_to_world_axes = axes * geometry.index_to_world_axes;
+}
+
+}  // namespace
+
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
     const bool chosen = chooses_labels(source), drawn = source.labels.value_or(chosen);
@@ -200,6 +239,7 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
     if (source.crop_low || source.crop_high)
         volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
                          source.crop_high.value_or(volume.geometry.dims - 1));
+    if (!source.transform.empty()) move(volume.geometry, source.transform);
     volume.warnings = warnings;
     const std::string checksum = fmt::format("{:016x}", volume.checksum);
     if (!source.checksum.empty() && source.checksum != checksum)

@@ -33,7 +33,7 @@ SceneDocument with_quality_of(const SceneDocument& other, SceneDocument document
 /// Whether both scenes have the same solid matter before clipping.
 bool same_matter(const Scene& a, const Scene& b) {
     return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer &&
-           a.label_colors == b.label_colors;
+           a.label_colors == b.label_colors && a.added == b.added;
 }
 
 }  // namespace
@@ -117,6 +117,7 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
         change(document);
         validate(document.quality.settings);
         volume = relabelled(document);
+        read_volumes(document, opened_.folders);
         scene = resolve_scene(document, volume ? *volume : *opened_.volume);
     } catch (const Error& error) {
         message_ = error.what();

@@ -109,11 +109,22 @@ def _with_names(content: Mapping[str, Any]) -> dict[str, Any]:
             found["transfer"] = transfer_points(value)
         elif name == "iso" and value is not None:
             found["iso_values"] = np.atleast_1d(np.asarray(value, dtype=float)).tolist()
+        elif name == "volumes" and value is not None:
+            found["volumes"] = [_added_volume(entry) for entry in value]
         elif name in found or name not in _OPTIONS:
             found[name] = value
         else:
             found[_OPTIONS[name]] = value
     return {name: _with_colors(name, value) for name, value in found.items()}
+
+
+def _added_volume(entry: Any) -> dict[str, Any]:
+    """The keys of a volume beside the first one."""
+    if isinstance(entry, (str, os.PathLike)):
+        return {"volume": {"path": entry}}
+    if not isinstance(entry, Mapping):
+        raise Error(f"volumes: a {type(entry).__name__}: expected a path or a dict of keys")
+    return _with_names(entry)
 
 
 def _per_material(found: dict[str, Any], key: str, value: Any) -> None:
@@ -149,6 +160,9 @@ class Scene:
     keys: keys as keywords, which override `source`: ``Scene(iso_values=[300], camera={"view": "back"})``. None leaves a
         key unchanged. Names of command-line options work too: ``iso=300``, ``look="ct-bone"``, ``labels=False``,
         ``view="back"``, ``color="tomato"``, ``extinction=8``, ``transfer="ct-muscle-bone"``.
+
+    ``volumes`` lists volumes beside the first one, each a path or a dict of its own keys:
+    ``Scene(volumes=[{"volume.path": "tumour.nii.gz", "color": "tomato"}])``.
 
     A colour is three numbers in linear light, a name of CSS or ``"#rrggbb"``. A transfer function is a list of points, a
     preset's name, or a colour map: ``transfer={"map": "viridis", "range": (0, 500), "extinction": (0, 2)}``, where the map is

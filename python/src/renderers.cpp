@@ -42,6 +42,9 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     scene.volume.box_filter = asked.box_filter;
     scene.volume.crop_low = asked.crop_low;
     scene.volume.crop_high = asked.crop_high;
+    scene.volume.transform = asked.transform;
+    scene.volume.visible = asked.visible;
+    scene.volume.clip = asked.clip;
     check_cpu_request(scene);
     validate(scene.quality.settings);
     std::string text;

@@ -12,6 +12,12 @@ namespace {
 /// The value of a key; None if the scene leaves it open. For an optional table: whether it exists. For a list of
 /// tables: their number.
 py::object value_at(const Document& self, const std::string& path) {
+    if (path == "volumes") return py::cast(self.scene.volumes.size());
+    if (const auto added = added_address(path)) {
+        const auto& [number, key] = *added;
+        if (number >= self.scene.volumes.size()) return py::none();
+        return value_at({self.scene.volumes[number], self.folders}, std::string(key));
+    }
     const KeyAddress address = key_address(path);
     if (address.component) return py::cast(number_at(self.scene, path));
     if (const SceneTable* table = find_table(address.path)) {
@@ -38,6 +44,8 @@ py::object value_at(const Document& self, const std::string& path) {
 
 /// "table", "tables" (a list of tables), "key", "group" (of keys and tables), or "" for an unknown path.
 std::string kind_of(const std::string& path) {
+    if (path == "volumes") return "tables";
+    if (const auto added = added_address(path)) return kind_of(std::string(added->second));
     const KeyAddress address = key_address(path);
     if (const SceneTable* table = find_table(address.path)) return table->list ? "tables" : "table";
     if (find_key(address.path)) return "key";
@@ -72,6 +80,7 @@ Document read(const std::string& path) {
 /// open iso-values of the scene become those of the whole scan.
 SharedVolume prepared(Document& self, const SharedVolume& given) {
     const py::gil_scoped_release release;
+    read_volumes(self.scene, self.folders);
     if (given.volume->has_segmentation() && chooses_labels(self.scene.volume))
         set_open_iso_values(self.scene, *given.volume);
     SceneDocument scene = self.scene;

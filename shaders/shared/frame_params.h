@@ -119,11 +119,14 @@ struct FrameParams {
     uint visible_mask;      // bit m: material m is matter
     float solid;            // voxels of matter along a ray behind which nothing is seen
     uint sheets_drawn;      // after this part of the picture, all splats in front of this sheet are drawn
-    // Only if kernels draw translucent matter in front of those surfaces (seen_surfaces.glsl).
+    // Only if kernels draw translucent matter in front of those surfaces, or of several volumes (seen_surfaces.glsl).
     Address seen_surfaces;  // (2, size.y, size.x) vec4: first and second surface of each pixel: premultiplied payload, opacity
     Address seen_ways;      // (2, size.y, size.x) float: distance to it along the ray, voxels
     Address surfaces_passed;  // (size.y, size.x) uint: how many of them are in the picture so far
     Address tile_ends;      // (tiles) uint: float bits of the depth (mm) at which the last of a tile's rays ends at a solid surface; infinity: not all end
+    // Only with several volumes: the same of all volumes drawn so far.
+    Address nearest_surfaces;  // (2, size.y, size.x) vec4
+    Address nearest_ways;      // (2, size.y, size.x) float, mm
 };
 
 EDGESPLAT_SHARED_END
@@ -134,7 +137,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1672);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1688);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -20,28 +20,42 @@ struct DeviceUnderTest {
     /// Runs passes 1 to 2c as far as needed. Returns whether any ran.
     bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
-        std::vector<CollectionPlan> plans;
-        for (const FrameRequest& part : parts_of(scene, settings, keep_buried))
-            plans.push_back(plan_collection(*part.volume, part.scene, drawn_settings(part), keep_buried,
-                                            part.whole ? &*part.whole : nullptr));
-        return level.provide(plans.back(), plans.size() > 1 ? &plans.front() : nullptr, scene, cost);
+        added.clear();
+        const FrameRequest request = request_of(scene, settings);
+        for (const AddedVolume& beside : scene.added)
+            added.emplace_back(session).volume.hold(beside.volume, 0);
+        bool ran = false;
+        for (std::size_t number = 0; number <= added.size(); ++number) {
+            const FrameRequest one = request_of_volume(request, number);
+            std::vector<CollectionPlan> plans;
+            for (const FrameRequest& part : keep_buried ? std::vector{one} : parts_of_volume(one))
+                plans.push_back(plan_collection(*part.volume, part.scene, drawn_settings(part), keep_buried,
+                                                part.whole ? &*part.whole : nullptr));
+            ran =
+                level_of(number).provide(plans.back(), plans.size() > 1 ? &plans.front() : nullptr, one.scene, cost) ||
+                ran;
+        }
+        return ran;
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {
-        const auto plan = [&](const CollectedSplats& splats, const FrameRequest& part) {
-            FramePlan planned = drawer.plan(splats, part.scene, camera, settings, size, payload);
-            if (offset != glm::dvec2(0)) shift_rays(planned, offset);
-            return planned;
-        };
-        const auto parts = parts_of(scene, settings, !level.surfaces.collected());
-        FramePlan of_all = plan(level.all(), parts.back());
-        if (parts.size() == 1) return drawer.draw(level.all(), std::move(of_all));
-        drawer.draw_mixed(level.opaque(), plan(level.opaque(), parts.front()), level.all(), std::move(of_all));
+        std::vector<PicturePart> planned;
+        const FrameRequest request = request_of(scene, settings);
+        const bool undivided = added.empty() && !level.surfaces.collected();
+        const std::vector<FrameRequest> parts = undivided ? std::vector{request} : drawn_parts(request);
+        for (const FrameRequest& part : parts) {
+            const LevelStore& of_part = level_of(part.number);
+            const CollectedSplats list = part.mixed && !part.whole ? of_part.opaque() : of_part.all();
+            planned.push_back({list, drawer.plan(list, part.scene, camera, settings, size, payload)});
+            if (offset != glm::dvec2(0)) shift_rays(planned.back().plan, offset);
+        }
+        if (planned.size() == 1) return drawer.draw(planned.front().list, std::move(planned.front().plan));
+        drawer.draw_parts(std::move(planned), are_of_several_volumes(parts));
     }
-    std::vector<FrameRequest> parts_of(const Scene& scene, const Settings& settings, bool undivided) {
-        const FrameRequest request{level.volume.volume(), scene, {}, settings, {}, {}};
-        return undivided ? std::vector<FrameRequest>{request} : drawn_parts(request);
+    FrameRequest request_of(const Scene& scene, const Settings& settings) const {
+        return {level.volume.volume(), scene, {}, settings, {}, {}};
     }
+    LevelStore& level_of(std::size_t number) { return number == 0 ? level : added[number - 1]; }
     const gpu::Device& device() const { return session.device(); }
     gpu::Commands& commands() { return session.commands(); }
     const SplatLists& lists() const { return level.splats.lists(); }
@@ -51,6 +65,7 @@ struct DeviceUnderTest {
     RenderOptions options;
     DeviceSession session;
     LevelStore level{session};
+    std::vector<LevelStore> added;  ///< of the scene's added volumes
     PictureDrawer drawer{session, options};
     SetupCost cost;  ///< of the last collect()
 };

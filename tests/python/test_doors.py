@@ -14,6 +14,7 @@ from edgesplat import Error, Scene
 # Values of every type of key, as TOML text.
 CANDIDATES = ["0.5", "1", "2", "[1.0, 1.0, 1.0]", "[1, 2, 3]", "[0.25]", "[20, 10]", "true", '"word"', '["word"]', '["tau"]']
 CANDIDATES += ['"back"', '"draft"', "[[0, 0, 0], [1, 2, 3]]", "[0.0, 1.0]"]
+CANDIDATES += ["[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]"]
 
 
 def sample(key):

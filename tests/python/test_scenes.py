@@ -191,3 +191,39 @@ def test_the_volume_beside_a_scene_file(tmp_path, ball, monkeypatch):
     (tmp_path / "scene.toml").write_text('[volume]\npath = "ball.nrrd"\n')
     monkeypatch.chdir("/")
     assert np.array_equal(Scene(tmp_path / "scene.toml").load_volume().array, ball)
+
+
+def test_several_volumes(tmp_path, ball):
+    from conftest import write_nrrd
+
+    write_nrrd(tmp_path / "ball.nrrd", ball)
+    moved = np.eye(4)
+    moved[0, 3] = 8.5
+    scene = Scene(
+        volumes=[
+            {"volume.path": tmp_path / "ball.nrrd", "color": "tomato", "volume.transform": moved.ravel()},
+            tmp_path / "ball.nrrd",
+        ],
+        size=(40, 30),
+    )
+    assert scene["volumes"] == 2
+    assert scene["volumes[0].volume.transform"][3] == 8.5
+    assert scene["volumes[1].volume.path"] == str(tmp_path / "ball.nrrd")
+    assert scene["volumes[7].volume.path"] is None
+    assert Scene(scene.text()) == scene
+    both = edgesplat.render(ball, scene, view="front")
+    scene["volumes[0].volume.visible"] = False
+    scene["volumes[1].volume.visible"] = False
+    one = edgesplat.render(ball, scene, view="front")
+    assert np.array_equal(one.array, edgesplat.render(ball, size=(40, 30), view="front").array)
+    assert not np.array_equal(one.array, both.array)
+    scene["volumes[0].volume.visible"] = True
+    again = edgesplat.render(ball, scene, camera=edgesplat.Camera(eye=(4, -60, 5), target=(9, 0, 5)))
+    red = again.array[..., 0] > 2 * again.array[..., 2]
+    assert red[:, 20:].sum() > 20 > red[:, :12].sum()
+    with pytest.raises(Error, match=r"volumes: a int: expected a path or a dict"):
+        Scene(volumes=[3])
+    with pytest.raises(Error, match=r"volumes\[0\].camera"):
+        Scene(volumes=[{"camera.view": "top"}])
+    with pytest.raises(Error, match=r"volumes\[0\].volume.path"):
+        edgesplat.render(ball, volumes=["nowhere.nrrd"])

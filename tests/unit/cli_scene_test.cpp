@@ -366,6 +366,34 @@ TEST_F(CliScene, RerunChecksEveryPixel) {
     EXPECT_EQ(run("rerun none.png --check").status, 1);
 }
 
+/// More volumes on the command line are entries of `volumes`, also those of scene files elsewhere.
+TEST_F(CliScene, DrawsSeveralVolumes) {
+    fs::create_directory(folder_ / "far");
+    write("far/ball.toml", "[volume]\npath = \"builtin:sphere:20\"\n[[materials]]\ncolor = [1, 0, 0]\n");
+    const std::string sources = "builtin:box:20 far/ball.toml ", size = " --size 48x40 --view oblique";
+    good("render " + sources + "-o a.png --set volumes[0].volume.transform=1,0,0,9,0,1,0,0,0,0,1,0,0,0,0,1" + size);
+    good("rerun a.png --check");
+    good("scene new " + sources + "-o s.toml --set volumes[0].volume.transform=1,0,0,9,0,1,0,0,0,0,1,0,0,0,0,1" + size);
+    good("scene check s.toml");
+    good("render s.toml -o b.png");
+    EXPECT_EQ(picture("a.png").pixels, picture("b.png").pixels);
+    good("render s.toml far/ball.toml -o c.png");
+    EXPECT_NE(picture("c.png").pixels, picture("b.png").pixels);
+    good("render s.toml -o d.png --set volumes[0].volume.visible=false");
+    good("render builtin:box:20 -o e.png " + size);
+    EXPECT_NE(picture("d.png").pixels, picture("b.png").pixels);
+    EXPECT_THAT(good("render s.toml --explain"), HasSubstr("6_merge_surfaces"));
+    EXPECT_THAT(run("render s.toml -o f.png --compare raycast").err, HasSubstr("several volumes"));
+    EXPECT_THAT(run("render builtin:box:20 builtin:nothing -o f.png").err, HasSubstr("volumes[0].volume.path"));
+    EXPECT_FALSE(fs::exists(folder_ / "f.png"));
+    good("render s.toml -o g.png --renderer reference --tolerance 0.01");
+    write("turn.toml",
+          text_of(folder_ / "s.toml") +
+              "\n[[movie.animate]]\nkey = \"volumes[0].iso_values[0]\"\ntimes = [0, 1]\nvalues = [0.4, 0.6]\n");
+    good("movie turn.toml -o frames/f_%d.png --seconds 0.1");
+    EXPECT_NE(picture("frames/f_0.png").pixels, picture("frames/f_2.png").pixels);
+}
+
 TEST_F(CliScene, RerunsEveryRenderer) {
     for (const char* options :
          {"--renderer raycast", "--renderer raycast --raycast-filter cubic", "--renderer raycast --raycast-step 0.3",

@@ -1,0 +1,300 @@
+// Scenes of several volumes, each on its own grid: on the device, by the reference, and in closed form.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "engine/reference/reference_renderer.h"
+#include "engine/renderer.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr glm::ivec2 kSize{72, 60};
+
+/// Depth below a ball's surface, mm, on a grid that holds it.
+std::shared_ptr<const Volume> ball(const glm::dvec3& middle, double radius, const glm::dmat3& axes) {
+    auto volume = std::make_shared<Volume>();
+    volume->name = "ball";
+    VolumeGeometry& geometry = volume->geometry;
+    geometry.index_to_world_axes = axes;
+    const double spacing = std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
+    geometry.dims = glm::ivec3(static_cast<int>(2 * radius / spacing) + 9);
+    geometry.origin = middle - axes * (glm::dvec3(geometry.dims - 1) * 0.5 + glm::dvec3(0.2, -0.1, 0.3));
+    for (int z = 0; z < geometry.dims.z; ++z)
+        for (int y = 0; y < geometry.dims.y; ++y)
+            for (int x = 0; x < geometry.dims.x; ++x) {
+                const glm::dvec3 at = geometry.to_world(glm::dvec3(x, y, z));
+                volume->values.push_back(static_cast<float>(radius - glm::length(at - middle)));
+            }
+    finish_volume(*volume);
+    return volume;
+}
+
+const glm::dmat3 kStraight(1.0);
+/// Turned, left-handed, with other spacings.
+const glm::dmat3 kOblique(glm::dvec3(0.66, 0.41, 0.1), glm::dvec3(0.5, -0.75, 0.15), glm::dvec3(-0.1, 0.12, 0.93));
+
+constexpr Material solid(const glm::dvec3& color) {
+    return {.color = color, .extinction = 9};
+}
+
+AddedVolume added(std::shared_ptr<const Volume> volume, std::vector<double> iso_values, std::vector<Material> above) {
+    AddedVolume out{.volume = std::move(volume),
+                    .iso_values = std::move(iso_values),
+                    .materials = {{}},
+                    .transfer = {},
+                    .label_colors = {}};
+    out.materials.insert(out.materials.end(), above.begin(), above.end());
+    return out;
+}
+
+/// An opaque ball, and one on another grid that reaches into it.
+PassScene two_balls() {
+    PassScene s;
+    s.name = "two balls";
+    s.volume = *ball({0, 0, 0}, 8, kStraight);
+    s.scene.iso_values = {0};
+    s.scene.materials = {{}, solid({1, 0.8, 0.5})};
+    s.scene.lights = {directional_light({0.4, -0.5, 0.6})};
+    s.scene.added = {added(ball({7, -3, 2}, 6, kOblique), {0}, {solid({0.4, 0.6, 1})})};
+    s.settings.pixels = PixelChoice::Every;
+    s.camera = {.eye = {9, -50, 22}, .direction = {-6, 49, -21}, .up = {0.1, 0.05, 1}, .fov_y = 32};
+    return s;
+}
+
+std::vector<PassScene> scenes() {
+    std::vector<PassScene> all{two_balls()};
+    const auto add = [&](const char* name, const auto& change) {
+        all.push_back(two_balls());
+        all.back().name = name;
+        change(all.back());
+    };
+    add("core in a shell", [](PassScene& s) {
+        // Translucent matter of one volume around opaque matter of another.
+        s.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
+        s.scene.added = {added(ball({1, -1, 0.5}, 5, kOblique), {0}, {solid({1, 0.8, 0.5})})};
+    });
+    add("shell around a core", [](PassScene& s) {
+        s.scene.added = {added(ball({1, -1, 0.5}, 11, kOblique), {0}, {{{0.3, 0.5, 1}, 0.1}})};
+    });
+    add("mixture and ball", [](PassScene& s) {
+        s.scene.iso_values = {0, 4};
+        s.scene.materials = {{}, {{0.3, 0.5, 1}, 0.12}, solid({1, 0.8, 0.5})};
+    });
+    add("thin layers", [](PassScene& s) {
+        s.scene.iso_values = {0, 0.9};
+        s.scene.materials = {{}, {{1, 0.8, 0.5}, 4.1}, {}};
+        s.scene.added[0].iso_values = {0, 1};
+        s.scene.added[0].materials = {{}, {{0.4, 0.6, 1}, 6.5}, {}};
+    });
+    add("one is cut", [](PassScene& s) {
+        s.scene.effects.clip.keep = {{{2, -4, 0}, {0.2, -1, 0.3}}};
+        s.scene.added[0].clipped = false;
+    });
+    add("three", [](PassScene& s) {
+        s.scene.added.push_back(added(ball({-6, -4, -3}, 5, 0.8 * kOblique), {0}, {solid({0.5, 1, 0.5})}));
+        s.scene.added.push_back(added(ball({0, 0, 0}, 12, kStraight), {0}, {{{1, 0.5, 0.5}, 0.05}}));
+    });
+    add("eye between", [](PassScene& s) {
+        s.camera = {.eye = {1, -13, 3}, .direction = {2, 10, -2}, .up = {0, 0, 1}, .fov_y = 90};
+    });
+    add("outlines", [](PassScene& s) { s.scene.effects.smooth_outlines = true; });
+    add("refined", [](PassScene& s) {
+        s.settings.pixels = PixelChoice::Refined;
+        s.camera = {.eye = {9, -24, 8}, .direction = {-6, 24, -8}, .up = {0, 0, 1}, .fov_y = 30};
+    });
+    return all;
+}
+
+std::vector<glm::vec4> drawn(const PassScene& s, std::uint32_t payload = shader::PAYLOAD_COLOR) {
+    DeviceUnderTest& state = prepared(s);
+    state.draw(s.scene, s.camera, s.settings, kSize, payload);
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    return {pixels.begin(), pixels.end()};
+}
+
+/// PSNR without the worst pixel of 200: where a ray only touches a surface, rounding decides.
+double decibels_of_most(std::span<const glm::vec4> got, std::span<const float> want, int channels, double scale) {
+    std::vector<double> squares(got.size(), 0);
+    for (std::size_t i = 0; i < got.size(); ++i)
+        for (int c = 0; c < channels; ++c) {
+            const auto at = i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c);
+            squares[i] += std::pow(static_cast<double>(got[i][c] - want[at]) / scale, 2);
+        }
+    std::ranges::sort(squares);
+    squares.resize(squares.size() - squares.size() / 200);
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    return -10 * std::log10(sum / (channels * static_cast<double>(squares.size())) + 1e-20);
+}
+
+TEST(SeveralVolumes, LookLikeTheReferences) {
+    for (const PassScene& s : scenes()) {
+        SCOPED_TRACE(s.name);
+        const auto got = drawn(s);
+        const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
+        const Image want = reference.render(s.camera, kSize.x, kSize.y);
+        const double psnr = decibels_of_most(got, want.pixels, 4, 1);
+        std::printf("%-20s %.1f dB\n", s.name.c_str(), psnr);
+        EXPECT_GE(psnr, 55);
+    }
+}
+
+TEST(SeveralVolumes, HaveTheReferencesOutputs) {
+    const PassScene s = two_balls();
+    const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
+    for (const auto& [payload, output, channels, scale] :
+         {std::tuple{shader::PAYLOAD_NORMAL, reference::Output::Normal, 3, 1.0},
+          {shader::PAYLOAD_DEPTH_DISTANCE, reference::Output::Depth, 1, 50.0}}) {
+        const auto got = drawn(s, payload);
+        const Image want = reference.render(s.camera, kSize.x, kSize.y, output);
+        EXPECT_GE(decibels_of_most(got, want.pixels, channels, scale), 45) << payload;
+    }
+}
+
+/// Two balls without light: each pixel has the colour of the nearer one.
+TEST(SeveralVolumes, AreExactForUnlitBalls) {
+    PassScene s = two_balls();
+    s.scene.lights.clear();
+    const auto got = drawn(s);
+    const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+    int wrong = 0, met = 0;
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            double nearest = 1e9;
+            glm::dvec4 want(0);
+            bool touches = false;
+            for (const auto& [middle, radius, color] :
+                 {std::tuple{glm::dvec3(0), 8.0, s.scene.materials[1].color},
+                  {glm::dvec3(7, -3, 2), 6.0, s.scene.added[0].materials[1].color}}) {
+                const glm::dvec3 from = s.camera.eye - middle, u = view.ray(x, y);  // both grids' first is the world's
+                const double b = glm::dot(from, u), beside = std::sqrt(glm::dot(from, from) - b * b);
+                touches = touches || std::abs(beside - radius) < 0.15;
+                const double at = -b - std::sqrt(std::max(radius * radius - beside * beside, 0.0));
+                if (beside > radius || at > nearest) continue;
+                touches = touches || std::abs(at - nearest) < 0.3;
+                nearest = at;
+                want = glm::dvec4(color, 1);
+            }
+            if (touches) continue;
+            met += want.a > 0 ? 1 : 0;
+            const glm::dvec4 off = glm::abs(glm::dvec4(got[static_cast<std::size_t>(y * kSize.x + x)]) - want);
+            wrong += std::max({off.x, off.y, off.z, off.w}) > 2e-3 ? 1 : 0;
+        }
+    EXPECT_GT(met, 800);
+    // Where both balls' surfaces meet, the nearer one may be either.
+    EXPECT_LE(wrong, 12);
+}
+
+/// A scene's volume that is moved without changing its order in the list.
+Scene exchanged(const PassScene& s, Volume& first) {
+    Scene scene = s.scene;
+    const AddedVolume was = scene.added[0];
+    scene.added[0] = {.volume = std::make_shared<const Volume>(s.volume),
+                      .iso_values = s.scene.iso_values,
+                      .materials = s.scene.materials,
+                      .transfer = s.scene.transfer,
+                      .label_colors = s.scene.label_colors};
+    scene.iso_values = was.iso_values;
+    scene.materials = was.materials;
+    first = *was.volume;
+    return scene;
+}
+
+TEST(SeveralVolumes, DoNotDependOnTheirOrder) {
+    for (const PassScene& s : scenes()) {
+        if (s.scene.added.size() != 1 || !s.scene.added[0].clipped) continue;
+        SCOPED_TRACE(s.name);
+        PassScene other = s;
+        other.scene = exchanged(s, other.volume);
+        EXPECT_TRUE(drawn(s) == drawn(other));
+    }
+}
+
+/// The same object twice, on different grids, is the object once.
+TEST(SeveralVolumes, OfOneObjectShowThatObject) {
+    PassScene alone = two_balls();
+    alone.scene.added.clear();
+    PassScene twice = two_balls();
+    twice.scene.added = {added(ball({0, 0, 0}, 8, kOblique), {0}, {twice.scene.materials[1]})};
+    const auto one = drawn(alone), two = drawn(twice);
+    std::vector<float> want;
+    for (const glm::vec4& pixel : one)
+        want.insert(want.end(), &pixel.x, &pixel.x + 4);
+    EXPECT_GE(decibels_of_most(two, want, 4, 1), 50);
+}
+
+/// A volume without matter changes no bit.
+TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
+    for (PassScene s : scenes()) {
+        SCOPED_TRACE(s.name);
+        PassScene alone = s;
+        alone.scene.added.clear();
+        for (AddedVolume& beside : s.scene.added)
+            for (Material& material : beside.materials)
+                material.extinction = 0;
+        alone.scene.clipped = s.scene.clipped = true;
+        EXPECT_TRUE(drawn(s) == drawn(alone));
+    }
+}
+
+/// What cannot be drawn together is said.
+TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
+    Renderer renderer({.validation = true});
+    const auto refusal = [&](const auto& change, const AovRequest& outputs = {}) {
+        PassScene s = two_balls();
+        change(s);
+        renderer.set_volume(std::make_shared<const Volume>(s.volume));
+        try {
+            renderer.render(s.scene, s.camera, s.settings, 16, 16, outputs);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    using testing::HasSubstr;
+    EXPECT_EQ(refusal([](PassScene&) {}), "");
+    EXPECT_THAT(
+        refusal([](PassScene& s) { s.scene.materials[1].extinction = s.scene.added[0].materials[1].extinction = 0.1; }),
+        HasSubstr("expected at most one such volume"));
+    EXPECT_THAT(refusal([](PassScene& s) { s.settings.opaque = OpaqueMatter::Kernels; }),
+                HasSubstr("opaque = surfaces"));
+    EXPECT_THAT(refusal([](PassScene& s) { s.scene.effects.occlusion.emplace(); }), HasSubstr("effects.occlusion"));
+    EXPECT_THAT(refusal([](PassScene& s) { s.scene.lights[0].shadows = true; }), HasSubstr("lights"));
+    EXPECT_THAT(refusal([](PassScene&) {}, {.tau = true}), HasSubstr("tau"));
+    EXPECT_THAT(refusal([](PassScene& s) {
+                    s.scene.added[0].iso_values = {3, 1};
+                }),
+                HasSubstr("volumes[0]: scene iso_values"));
+    EXPECT_THAT(refusal([](PassScene& s) { s.scene.added[0].volume = nullptr; }), HasSubstr("volumes[0]"));
+    EXPECT_THAT(refusal([](PassScene& s) { s.scene.added.resize(16, s.scene.added[0]); }), HasSubstr("at most 16"));
+    EXPECT_EQ(refusal([](PassScene& s) { s.scene.added.resize(15, s.scene.added[0]); }), "");
+}
+
+/// The renderer keeps each volume's splats, whatever else changes.
+TEST(SeveralVolumes, AreCollectedOnce) {
+    const PassScene s = two_balls();
+    Renderer renderer({.validation = true});
+    renderer.set_volume(std::make_shared<const Volume>(s.volume));
+    const auto voxels = [&](const Scene& scene) {
+        return renderer.render(scene, s.camera, s.settings, 32, 32).stats.voxels_estimated;
+    };
+    Scene scene = s.scene;
+    EXPECT_GT(voxels(scene), 0U);
+    EXPECT_EQ(voxels(scene), 0U);
+    scene.added[0].materials[1].color = {1, 0, 0};
+    scene.effects.clip.keep = {{{2, -4, 0}, {0.2, -1, 0.3}}};
+    EXPECT_EQ(voxels(scene), 0U);
+    const AddedVolume third = added(ball({-6, -4, -3}, 5, kOblique), {0}, {solid({0.5, 1, 0.5})});
+    scene.added.insert(scene.added.begin(), third);
+    const std::uint64_t of_third = voxels(scene);
+    EXPECT_GT(of_third, 0U);
+    EXPECT_EQ(of_third, third.volume->geometry.voxel_count());
+    scene.added.erase(scene.added.begin());
+    EXPECT_EQ(voxels(scene), 0U);
+}
+
+}  // namespace
+}  // namespace edgesplat::test

@@ -1,0 +1,213 @@
+// Scenes of several volumes: files, keys, places, and what is drawn of each.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_keys.h"
+#include "engine/scene/views.h"
+#include "engine/volume/analytic_volumes.h"
+#include "tests/unit/refusal.h"
+
+namespace edgesplat {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kText = R"(
+iso_values = [0.5]
+[volume]
+path = "builtin:sphere:20"
+[[volumes]]
+iso_values = [0.4]
+[volumes.volume]
+path = "builtin:box:16"
+transform = [0,-1,0,5, 1,0,0,6, 0,0,2,7, 0,0,0,1]
+clip = false
+[[volumes.materials]]
+color = [1, 0, 0]
+[[volumes]]
+volume.path = "builtin:orbital:16"
+volume.visible = false
+)";
+
+SceneDocument parse(const std::string& text) {
+    return parse_scene(text, "a.toml", {});
+}
+
+std::vector<std::string> problems(const std::string& text) {
+    try {
+        parse(text);
+    } catch (const SceneFileError& error) {
+        return error.problems();
+    }
+    return {};
+}
+
+/// The document with its volumes read, and the first of them.
+SceneDocument read(std::string_view text, Volume& first) {
+    SceneDocument document = parse(std::string(text));
+    first = load_scene_volume(document, {});
+    return document;
+}
+
+TEST(SceneVolumes, AreWrittenAsTheyWereRead) {
+    const SceneDocument document = parse(kText);
+    ASSERT_EQ(document.volumes.size(), 2U);
+    EXPECT_EQ(document.volumes[0].volume.path, "builtin:box:16");
+    EXPECT_THAT(document.volumes[0].iso_values, ElementsAre(0.4));
+    EXPECT_FALSE(document.volumes[0].volume.clip);
+    EXPECT_FALSE(document.volumes[1].volume.visible);
+    EXPECT_EQ(parse(scene_text(document)), document);
+    EXPECT_EQ(parse(commented_scene_text(document)), document);
+    EXPECT_EQ(parse(commented_scene_text(parse("volume.path = \"builtin:sphere\""))).volumes.size(), 0U);
+}
+
+TEST(SceneVolumes, HaveProblemsWithTheirLines) {
+    EXPECT_THAT(
+        problems("volume.path = \"builtin:sphere\"\n[[volumes]]\nvolume.path = \"builtin:box\"\n"
+                 "camera.view = \"top\"\niso_values = \"a\"\n[volumes.volume.nested]\n"),
+        AllOf(Contains(AllOf(HasSubstr("a.toml:4: volumes[0].camera"), HasSubstr("not for one volume of several"))),
+              Contains(AllOf(HasSubstr("a.toml:5: volumes[0].iso_values"), HasSubstr("expected"))),
+              Contains(HasSubstr("a.toml:6: volumes[0].volume.nested"))));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\n[[volumes]]\n\niso_values = [2, 1]\n"),
+                ElementsAre(AllOf(HasSubstr("a.toml:2: volumes[0].volume.path"), HasSubstr("missing")),
+                            AllOf(HasSubstr("a.toml:4: volumes[0].iso_values"), HasSubstr("ascending"))));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\nvolumes = 3\n"), Contains(HasSubstr("[[volumes]]")));
+    std::string many = "volume.path = \"builtin:sphere\"\n";
+    for (int i = 0; i < 16; ++i)
+        many += "[[volumes]]\nvolume.path = \"builtin:box\"\n";
+    EXPECT_THAT(problems(many), Contains(HasSubstr("expected at most 15")));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\noutput.renderer = \"truth\"\n"
+                         "[[volumes]]\nvolume.path = \"builtin:box\"\n"),
+                Contains(HasSubstr("draws one volume")));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\nvolume.transform = [1, 2]\n"),
+                Contains(HasSubstr("expected a list of 16 numbers")));
+}
+
+TEST(SceneVolumes, KeysAreSetByTheirAddress) {
+    SceneDocument document = parse("volume.path = \"builtin:sphere\"");
+    set_key(document, "volumes[0].volume.path=builtin:box");
+    set_key(document, "volumes[0].iso_values=0.25");
+    set_key(document, "volumes[0].materials[0].color=1,0,0");
+    ASSERT_EQ(document.volumes.size(), 1U);
+    EXPECT_THAT(document.volumes[0].iso_values, ElementsAre(0.25));
+    EXPECT_EQ(document.volumes[0].materials[0].color, glm::dvec3(1, 0, 0));
+    EXPECT_EQ(number_at(document, "volumes[0].iso_values[0]"), 0.25);
+    animate_number(document, "volumes[0].iso_values[0]", 0.5);
+    EXPECT_EQ(number_at(document, "volumes[0].iso_values[0]"), 0.5);
+    animate_number(document, "volumes[0].volume.frame", 2.4);
+    EXPECT_EQ(document.volumes[0].volume.frame, 2);
+    set_key(document, "volumes=[{volume.path = \"builtin:torus\"}]");
+    EXPECT_EQ(document.volumes[0].volume.path, "builtin:torus");
+    const auto refused = [&](const char* assignment) {
+        const SceneDocument before = document;
+        const std::string text = refusal([&] { set_key(document, assignment); });
+        EXPECT_EQ(document, before);
+        return text;
+    };
+    EXPECT_THAT(refused("volumes[2].iso_values=1"), HasSubstr("expected an index from 0 to 1"));
+    EXPECT_THAT(refused("volumes[0].camera.view=top"), HasSubstr("expected volumes[NUMBER].KEY"));
+    EXPECT_THAT(refused("volumes[0].volume.pth=a"),
+                AllOf(HasSubstr("volumes[0].volume.pth"), HasSubstr("unknown key")));
+    EXPECT_THAT(refused("volumes[x].iso_values=1"), HasSubstr("expected volumes[NUMBER].KEY"));
+    EXPECT_THAT(refusal([&] { number_at(document, "volumes[4].iso_values[0]"); }), HasSubstr("volumes[4]"));
+}
+
+TEST(SceneVolumes, LieWhereTheirMatricesPutThem) {
+    Volume first;
+    const SceneDocument document = read(kText, first);
+    const Volume cube = builtin_volume("builtin:box:16");
+    const Volume& moved = *document.volumes[0].read->volume;
+    const glm::dvec3 at = cube.geometry.to_world({1, 2, 3});
+    EXPECT_LT(glm::length(moved.geometry.to_world({1, 2, 3}) - glm::dvec3(5 - at.y, 6 + at.x, 7 + 2 * at.z)), 1e-12);
+    EXPECT_EQ(moved.checksum, cube.checksum);
+    SceneDocument flat = parse(kText);
+    flat.volumes[0].volume.transform[10] = 0;
+    EXPECT_THAT(refusal([&] { load_scene_volume(flat, {}); }),
+                AllOf(HasSubstr("volumes[0]"), HasSubstr("volume.transform"), HasSubstr("inverted")));
+    SceneDocument alone =
+        parse("volume.path = \"builtin:sphere:20\"\nvolume.transform = [1,0,0,9, 0,1,0,0, 0,0,1,0, 0,0,0,1]");
+    EXPECT_EQ(load_scene_volume(alone, {}).geometry.origin, first.geometry.origin + glm::dvec3(9, 0, 0));
+}
+
+TEST(SceneVolumes, AreReadOnceUntilTheirSourceChanges) {
+    Volume first;
+    SceneDocument document = read(kText, first);
+    const auto cube = document.volumes[0].read, orbital = document.volumes[1].read;
+    document.volumes[1].volume.visible = true;
+    document.volumes[0].materials[0].color = {0, 1, 0};
+    read_volumes(document, {});
+    EXPECT_EQ(document.volumes[0].read, cube);
+    EXPECT_EQ(document.volumes[1].read, orbital);
+    document.volumes[0].volume.path = "builtin:box:18";
+    read_volumes(document, {});
+    EXPECT_EQ(document.volumes[0].read->volume->geometry.dims.x, 18);
+    document.volumes[1].volume.path = "builtin:nothing";
+    EXPECT_THAT(refusal([&] { read_volumes(document, {}); }), HasSubstr("volumes[1]: "));
+}
+
+TEST(SceneVolumes, KeepTheirOwnMatter) {
+    Volume first;
+    const SceneDocument document = read(kText, first);
+    const Scene scene = resolve_scene(document, first);
+    ASSERT_EQ(scene.added.size(), 2U);
+    EXPECT_THAT(scene.iso_values, ElementsAre(0.5));
+    EXPECT_THAT(scene.added[0].iso_values, ElementsAre(0.4));
+    EXPECT_EQ(scene.added[0].materials[1].color, glm::dvec3(1, 0, 0));
+    EXPECT_FALSE(scene.added[0].clipped);
+    EXPECT_TRUE(has_matter(scene_of_volume(scene, 0)) && has_matter(scene_of_volume(scene, 1)));
+    EXPECT_FALSE(has_matter(scene_of_volume(scene, 2))) << "it is not visible";
+    EXPECT_NE(scene.materials[1].color, scene.added[1].materials[1].color) << "other default colours";
+    EXPECT_THAT(refusal([] { resolve_scene(parse(kText), builtin_volume("builtin:sphere:20")); }),
+                HasSubstr("volumes[0]: builtin:box:16 is not read"));
+    EXPECT_EQ(raycast_obstacle(scene), "several volumes");
+}
+
+/// What is written out of a picture draws the same picture, and shows a hidden volume again.
+TEST(SceneVolumes, AreWrittenOutWithEveryChoice) {
+    Volume first;
+    SceneDocument document = read(kText, first);
+    document.effects.clip.keep.resize(1);
+    document.volume.clip = false;
+    const Scene scene = resolve_scene(document, first);
+    const Camera camera = resolve_camera(document, first, scene);
+    const SceneDocument out = resolved(document, first, scene, camera, document.quality.settings);
+    EXPECT_EQ(out.effects.clip.keep.size(), 1U);
+    EXPECT_FALSE(out.volumes[1].volume.visible);
+    EXPECT_FALSE(out.volumes[1].iso_values.empty());
+    SceneDocument again = parse(scene_text(out));
+    const Volume same = load_scene_volume(again, {});
+    const Scene drawn = resolve_scene(again, same);
+    EXPECT_EQ(drawn.materials, scene.materials);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(drawn.added[i].iso_values, scene.added[i].iso_values);
+        EXPECT_EQ(drawn.added[i].materials, scene.added[i].materials);
+    }
+    again.volumes[1].volume.visible = true;
+    EXPECT_TRUE(has_matter(scene_of_volume(resolve_scene(again, same), 2)));
+    // Alone, a clip plane that does not cut is not there, and stays in the file.
+    SceneDocument alone = parse("volume.path = \"builtin:sphere:20\"\nvolume.clip = false");
+    alone.effects.clip.keep.resize(1);
+    const Volume sphere = load_scene_volume(alone, {});
+    const Scene whole = resolve_scene(alone, sphere);
+    EXPECT_TRUE(whole.effects.clip.empty());
+    EXPECT_EQ(resolved(alone, sphere, whole, camera, {}).effects.clip.keep.size(), 1U);
+}
+
+/// A named view frames the matter of all volumes.
+TEST(SceneVolumes, AreAllInThePicture) {
+    Volume first;
+    const SceneDocument near = read("volume.path = \"builtin:sphere:20\"", first);
+    const double alone = glm::length(resolve_camera(near, first, resolve_scene(near, first)).eye);
+    const SceneDocument far = read(
+        "volume.path = \"builtin:sphere:20\"\n[[volumes]]\nvolume.path = \"builtin:sphere:20\"\n"
+        "volume.transform = [1,0,0,100, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n",
+        first);
+    EXPECT_GT(glm::length(resolve_camera(far, first, resolve_scene(far, first)).eye), 2 * alone);
+}
+
+}  // namespace
+}  // namespace edgesplat
