@@ -26,6 +26,8 @@ void materials_panel(AppState& state);
 void lights_panel(AppState& state);
 void effects_panel(AppState& state);
 void clip_panel(AppState& state);
+/// The scene's volumes: which are shown, and the matter of those beside the first.
+void volumes_panel(AppState& state);
 /// The labels of a segmentation; `Opened::samples` must exist.
 void labels_panel(AppState& state);
 /// A list of the presets of one kind.

@@ -51,8 +51,11 @@ void scene_panel(AppState& state) {
     const Scope scope(state, "scene");
     undo_buttons(state);
     if (!ImGui::BeginTabBar("parts")) return;
-    constexpr std::array<std::pair<const char*, void (*)(AppState&)>, 4> kParts{
-        {{"Values", values_panel}, {"Light", lights_panel}, {"Effects", effects_panel}, {"Clip", clip_panel}}};
+    constexpr std::array<std::pair<const char*, void (*)(AppState&)>, 5> kParts{{{"Values", values_panel},
+                                                                                 {"Light", lights_panel},
+                                                                                 {"Effects", effects_panel},
+                                                                                 {"Clip", clip_panel},
+                                                                                 {"Volumes", volumes_panel}}};
     for (const auto& [name, panel] : kParts) {
         const bool open = ImGui::BeginTabItem(name);
         note(state, name);

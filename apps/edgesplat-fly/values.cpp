@@ -46,6 +46,15 @@ const Values& values() {
         {"message", [](AppState& s) { return s.session.message(); }},
         {"error", [](AppState& s) { return s.error.empty() ? "none" : s.error; }},
         {"volume", [](AppState& s) { return s.session.is_open() ? s.session.opened().path : "none"; }},
+        {"volumes", [](AppState& s) { return text(static_cast<double>(s.session.document().volumes.size() + 1)); }},
+        {"volumes_shown",
+         [](AppState& s) {
+             const edgesplat::Scene& scene = s.session.scene();
+             int shown = 0;
+             for (std::size_t number = 0; number <= scene.added.size(); ++number)
+                 shown += has_matter(scene_of_volume(scene, number)) ? 1 : 0;
+             return text(shown);
+         }},
         {"finished", [](AppState& s) { return s.shown && s.shown->finished ? "yes" : "no"; }},
         {"best", [](AppState& s) { return s.shown && s.shown->best ? "yes" : "no"; }},
         {"moving", [](AppState& s) { return s.shown && s.shown->moving ? "yes" : "no"; }},

@@ -124,6 +124,11 @@ class Passes {
             .transfer = !request.scene.transfer.empty()};
         const auto add_pass = [&](const char* pass, const char* shader, double milliseconds) {
             add("setup", pass, milliseconds, {variant(shader, passes::light_constants(in))});
+            if (f.draws.front().plan.variant.several) {
+                passes::SplatLight beside = in;
+                beside.beside = true;
+                add("setup", pass, milliseconds, {variant(shader, passes::light_constants(beside))});
+            }
         };
         if (f.occluded) add_pass("2b_occlude_ambient", "2b_occlude_ambient.comp", kRates.occlude_splat * splats);
         if (f.shadow_lights > 0)

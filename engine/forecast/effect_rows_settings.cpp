@@ -163,7 +163,8 @@ std::vector<Effect> settings_effects() {
          .passes = {"6_merge_surfaces", "6_join_surfaces"},
          .resources = {"ends of tiles", "nearest surfaces", "passed surfaces", "seen surfaces",
                        "ways to nearest surfaces", "ways to surfaces"},
-         .resized = {},
+         .resized = {"B-spline coefficients", "edge field", "listed bricks", "run offsets", "scene parameters",
+                     "splat list", "splat traits", "volume"},
          .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
          .frame_fields = {"nearest_surfaces", "nearest_ways", "seen_surfaces", "seen_ways", "surfaces_passed",
                           "tile_ends"}});

@@ -7,6 +7,7 @@
 #include "engine/passes/2_collect_splats.h"
 #include "engine/scene/mixture.h"
 #include "engine/scene/transfer_function.h"
+#include "engine/scene/volume_order.h"
 #include "engine/store/light.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
@@ -191,19 +192,6 @@ std::vector<FrameRequest> parts_of_volume(const FrameRequest& request) {
 
 namespace {
 
-/// An order of volumes that does not depend on the scene's.
-bool precedes(const FrameRequest& a, const FrameRequest& b) {
-    const auto key = [](const Volume& volume) {
-        const VolumeGeometry& g = volume.geometry;
-        std::vector<double> numbers{g.origin.x, g.origin.y, g.origin.z};
-        for (int axis = 0; axis < 3; ++axis)
-            for (int i = 0; i < 3; ++i)
-                numbers.push_back(g.index_to_world_axes[axis][i]);
-        return std::pair(volume.checksum, numbers);
-    };
-    return key(*a.volume) < key(*b.volume);
-}
-
 bool has_opaque_matter(const FrameRequest& part) {
     const std::uint32_t translucent = translucent_materials(part.scene, part.volume->geometry);
     for (std::size_t m = 0; m < part.scene.materials.size(); ++m)
@@ -214,10 +202,6 @@ bool has_opaque_matter(const FrameRequest& part) {
 /// Throws Error if a picture of several volumes has what they cannot be drawn with.
 void check_several(const FrameRequest& request) {
     if (request.outputs.tau) fail("output tau: is of one volume, but the scene has several");
-    if (occludes_ambient(request.scene))
-        fail("effects.occlusion: several volumes do not occlude each other, expected a scene of one volume");
-    if (!shadow_lights(request.scene).empty())
-        fail("lights: several volumes cast no shadows on each other, expected lights without shadows");
 }
 
 }  // namespace
@@ -245,7 +229,9 @@ std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
                 "opaque = surfaces, edges = cubic, sheet_format = tiles, no antialias",
                 name);
     }
-    std::ranges::stable_sort(surfaces, precedes);
+    // The picture must not depend on the order of the volumes.
+    std::ranges::stable_sort(surfaces, {},
+                             [](const FrameRequest& part) { return volume_order(*part.volume, part.scene); });
     surfaces.insert(surfaces.end(), kernels.begin(), kernels.end());
     if (surfaces.empty()) surfaces.push_back(request_of_volume(request, 0));
     return surfaces;

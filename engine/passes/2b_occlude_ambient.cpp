@@ -3,11 +3,9 @@
 namespace edgesplat::passes {
 
 gpu::Specialization light_constants(const SplatLight& in) {
-    return {{shader::SPEC_ISO_COUNT, in.iso_count},
-            {shader::SPEC_CLIP_KEEP, in.clip.keep},
-            {shader::SPEC_CLIP_REMOVE, in.clip.remove},
-            {shader::SPEC_SURFACES, in.surfaces ? 1U : 0U},
-            {shader::SPEC_TRANSFER, in.transfer ? 1U : 0U}};
+    return {{shader::SPEC_ISO_COUNT, in.iso_count},         {shader::SPEC_CLIP_KEEP, in.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, in.clip.remove},     {shader::SPEC_SURFACES, in.surfaces ? 1U : 0U},
+            {shader::SPEC_TRANSFER, in.transfer ? 1U : 0U}, {shader::SPEC_BESIDE, in.beside ? 1U : 0U}};
 }
 
 void occlude_ambient(gpu::Commands& commands, const SplatLight& in) {

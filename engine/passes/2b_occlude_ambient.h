@@ -13,13 +13,14 @@ struct SplatLight {
     std::uint32_t iso_count = 1;
     ClipCount clip{};
     bool surfaces = false;  ///< surface splats
-    bool transfer = false;  ///< extinction is from SceneParams::transfer
+    bool transfer = false;  ///< extinction is from a transfer function
+    bool beside = false;    ///< the matter is that of another volume, and its share multiplies the one that is there
 };
 
 /// Specialization of both.
 gpu::Specialization light_constants(const SplatLight& in);
 
-/// Reads the volume, SceneParams and the splat list, writes LightParams::reach. View-independent.
+/// Reads the matter's volume, SceneParams and the splat list, writes LightParams::reach. View-independent.
 void occlude_ambient(gpu::Commands& commands, const SplatLight& in);
 
 }  // namespace edgesplat::passes

@@ -21,14 +21,15 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
     const IndexClip clip = index_clip(scene.effects.clip, geometry);
     const SurfacePoint s =
         at_cut(surface_point(record.edge, band, turned, geometry), record.edge, voxel, clip, geometry);
-    return ambient_reach_at(s, record.voxel, field, scaled, scene, geometry, radius, rays);
+    return ambient_reach_at(s, field.voxel(record.voxel), geometry, {field, scaled, scene, geometry}, radius, rays);
 }
 
-double ambient_reach_at(const SurfacePoint& s, std::uint32_t splat_voxel, const Field& field, const ScaledScene& scaled,
-                        const Scene& scene, const VolumeGeometry& geometry, double radius, int rays) {
-    const glm::ivec3 voxel = field.voxel(splat_voxel);
+double ambient_reach_at(const SurfacePoint& s, const glm::ivec3& voxel, const VolumeGeometry& own,
+                        const LightMatter& matter, double radius, int rays) {
+    const auto& [field, scaled, scene, geometry] = matter;
     const IndexClip clip = index_clip(scene.effects.clip, geometry);
-    const glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
+    glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
+    if (&own != &geometry) start = geometry.to_index(own.to_world(start));
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
     const bool sphere = s.normal == glm::dvec3(0);
     const glm::dmat3 frame = sphere ? glm::dmat3(1) : edgesplat::geometry::frame_of(s.normal);

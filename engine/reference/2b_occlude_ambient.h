@@ -18,8 +18,16 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
                      const VolumeGeometry& geometry, double band, double radius, bool turned = false,
                      int rays = kOcclusionRays);
 
-/// The same at a point beside the voxel's face.
-double ambient_reach_at(const SurfacePoint& point, std::uint32_t voxel, const Field& field, const ScaledScene& scaled,
-                        const Scene& scene, const VolumeGeometry& geometry, double radius, int rays = kOcclusionRays);
+/// Matter that attenuates light, of the splats' own volume or of another one.
+struct LightMatter {
+    Field field;
+    const ScaledScene& scaled;
+    const Scene& scene;
+    const VolumeGeometry& geometry;
+};
+
+/// The same at a point beside the face of a voxel in `own`.
+double ambient_reach_at(const SurfacePoint& point, const glm::ivec3& voxel, const VolumeGeometry& own,
+                        const LightMatter& matter, double radius, int rays = kOcclusionRays);
 
 }  // namespace edgesplat::reference

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/geometry/in_double.h"
-#include "engine/reference/2b_occlude_ambient.h"
 
 namespace edgesplat::reference {
 namespace {
@@ -27,11 +26,13 @@ SurfacePoint lit_point(const SplatRecord& record, const Field& field, const Volu
     return at_cut(s, record.edge, voxel, clip, geometry);
 }
 
-double light_reach(const SurfacePoint& point, std::uint32_t voxel, const Field& field, const ScaledScene& scaled,
-                   const Scene& scene, const VolumeGeometry& geometry, const Light& light) {
+double light_reach(const SurfacePoint& point, const glm::ivec3& voxel, const VolumeGeometry& own,
+                   const LightMatter& matter, const Light& light) {
+    const auto& [field, scaled, scene, geometry] = matter;
     const IndexClip clip = index_clip(scene.effects.clip, geometry);
     const double lift = std::min(kShadowLift * point.voxel, point.room);
-    const glm::dvec3 from = glm::dvec3(field.voxel(voxel)) + point.foot + lift * point.step;
+    glm::dvec3 from = glm::dvec3(voxel) + point.foot + lift * point.step;
+    if (&own != &geometry) from = geometry.to_index(own.to_world(from));
     const glm::dvec3 way = way_to_light(light, geometry, from);
     const double length = light.kind == Light::Kind::Point ? glm::length(way) : 1e9;
     const glm::dvec3 u = length > 0 ? glm::normalize(way) : glm::dvec3(0, 0, 1);

@@ -1,7 +1,7 @@
 // Pass 2c: finds the share of a light that reaches a splat (docs/method/light.md, 2c_cast_shadows).
 #pragma once
 
-#include "engine/reference/surface_point.h"
+#include "engine/reference/2b_occlude_ambient.h"
 
 namespace edgesplat::reference {
 
@@ -10,8 +10,8 @@ namespace edgesplat::reference {
 SurfacePoint lit_point(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
                        const Light& light, const IndexClip& clip = {});
 
-/// Share [0, 1] of a directional or point light that reaches the surface point of a voxel.
-double light_reach(const SurfacePoint& point, std::uint32_t voxel, const Field& field, const ScaledScene& scaled,
-                   const Scene& scene, const VolumeGeometry& geometry, const Light& light);
+/// Share [0, 1] of a directional or point light that passes the matter to the surface point of a voxel in `own`.
+double light_reach(const SurfacePoint& point, const glm::ivec3& voxel, const VolumeGeometry& own,
+                   const LightMatter& matter, const Light& light);
 
 }  // namespace edgesplat::reference

@@ -171,11 +171,15 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
         if (const PreparedVolume* part = volume->opaque_part()) surfaces.push_back(part);
         if (!front) front = volume->kernel_part();
     }
+    std::vector<LightMatter> matter;
+    if (has_matter(lighting_)) matter.push_back(light_matter());
+    for (const auto& volume : added_)
+        if (has_matter(volume->lighting_)) matter.push_back(volume->light_matter());
     std::vector<std::vector<SplatRecord>> lit;
     for (const PreparedVolume* part : surfaces)
-        lit.push_back(part->lit_surfaces(output));
+        lit.push_back(part->lit_surfaces(output, matter));
     const std::vector<SplatRecord> kernels =
-        front ? front->lit_kernels(camera.eye, output) : std::vector<SplatRecord>{};
+        front ? front->lit_kernels(camera.eye, output, matter) : std::vector<SplatRecord>{};
     const auto drawn = [&](const glm::dvec2& offset) {
         const auto view_of_part = [&](const PreparedVolume& part) {
             View view = part.view_of(camera, width, height, output);
@@ -210,7 +214,20 @@ void PreparedVolume::replace_surface(std::size_t voxel, const VoxelEdge& edge) {
     if (at != surfaces_.end() && at->voxel == voxel) at->edge = edge;
 }
 
-std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
+namespace {
+
+/// The share of light that all matter lets through; each takes its own.
+template <typename Share>
+double product(std::span<const LightMatter> matter, const Share& share) {
+    double all = 1;
+    for (const LightMatter& one : matter)
+        all *= share(one);
+    return all;
+}
+
+}  // namespace
+
+std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output, std::span<const LightMatter> matter) const {
     std::vector<SplatRecord> lit = surfaces_;
     const std::vector<std::size_t> shadowing = shadow_lights(scene_);
     const bool occludes = occludes_ambient(scene_);
@@ -225,19 +242,21 @@ std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
             const SurfacePoint point = surface_point(face, edge_reach(settings_), false, geometry);
             if (occludes) {
                 const AmbientOcclusion& occlusion = *scene_.effects.occlusion;
-                const double reach =
-                    ambient_reach_at(point, record.voxel, field(), shading_, lighting_, geometry, occlusion.radius);
+                const double reach = product(matter, [&](const LightMatter& one) {
+                    return ambient_reach_at(point, field().voxel(record.voxel), geometry, one, occlusion.radius);
+                });
                 record.reach.ambient = 1 - occlusion.strength * (1 - reach);
             }
             for (const std::size_t l : shadowing)
-                record.reach.lights[l] =
-                    light_reach(point, record.voxel, field(), shading_, lighting_, geometry, scene_.lights[l]);
+                record.reach.lights[l] = product(matter, [&](const LightMatter& one) {
+                    return light_reach(point, field().voxel(record.voxel), geometry, one, scene_.lights[l]);
+                });
         }
     });
     return lit;
 }
 
-void PreparedVolume::find_light(std::span<SplatRecord> records) const {
+void PreparedVolume::find_light(std::span<SplatRecord> records, std::span<const LightMatter> matter) const {
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const double band = edge_reach(settings_);
@@ -249,8 +268,11 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
         for (int i = begin; i < end; ++i) {
             SplatRecord& record = records[static_cast<std::size_t>(i)];
             const auto ambient = [&](bool turned) {
-                const double reach =
-                    ambient_reach(record, f, shading_, lighting_, geometry, band, occlusion->radius, turned);
+                const SurfacePoint point = at_cut(surface_point(record.edge, band, turned, geometry), record.edge,
+                                                  glm::dvec3(f.voxel(record.voxel)), clip, geometry);
+                const double reach = product(matter, [&](const LightMatter& one) {
+                    return ambient_reach_at(point, f.voxel(record.voxel), geometry, one, occlusion->radius);
+                });
                 return 1 - occlusion->strength * (1 - reach);
             };
             if (occludes_ambient(scene_)) {
@@ -259,17 +281,19 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
             }
             for (const std::size_t l : shadowing) {
                 const SurfacePoint point = lit_point(record, f, geometry, band, scene_.lights[l], clip);
-                record.reach.lights[l] =
-                    light_reach(point, record.voxel, f, shading_, lighting_, geometry, scene_.lights[l]);
+                record.reach.lights[l] = product(matter, [&](const LightMatter& one) {
+                    return light_reach(point, f.voxel(record.voxel), geometry, one, scene_.lights[l]);
+                });
             }
         }
     });
 }
 
-std::vector<SplatRecord> PreparedVolume::lit_kernels(const glm::dvec3& eye, Output output) const {
+std::vector<SplatRecord> PreparedVolume::lit_kernels(const glm::dvec3& eye, Output output,
+                                                     std::span<const LightMatter> matter) const {
     std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
                                                       eye, output == Output::Tau, classified_, carried_);
-    if (output == Output::Color) find_light(records);
+    if (output == Output::Color) find_light(records, matter);
     return records;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/image/image.h"
+#include "engine/reference/2b_occlude_ambient.h"
 #include "engine/reference/4_sort_sheets.h"
 #include "engine/reference/5_draw_splats.h"
 #include "engine/reference/surfaces.h"
@@ -52,12 +53,15 @@ class PreparedVolume {
     /// The same for a part of a mixture. `whole`: all its matter, which attenuates light.
     PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised,
                    const Scene& whole);
-    /// The surface splats, with the light that reaches them if `output` shows it.
-    std::vector<SplatRecord> lit_surfaces(Output output) const;
+    /// The surface splats, with the light that reaches them if `output` shows it. `matter`: of all volumes.
+    std::vector<SplatRecord> lit_surfaces(Output output, std::span<const LightMatter> matter) const;
     /// Finds the light that reaches each splat: ambient occlusion and shadows.
-    void find_light(std::span<SplatRecord> records) const;
+    void find_light(std::span<SplatRecord> records, std::span<const LightMatter> matter) const;
     /// The kernels of passes 2 and 3, with the light that reaches them if `output` shows it.
-    std::vector<SplatRecord> lit_kernels(const glm::dvec3& eye, Output output) const;
+    std::vector<SplatRecord> lit_kernels(const glm::dvec3& eye, Output output,
+                                         std::span<const LightMatter> matter) const;
+    /// All matter of the volume, which attenuates light.
+    LightMatter light_matter() const { return {field(), shading_, lighting_, volume_->geometry}; }
     /// The part that surface splats draw, and the one that kernels draw; null if there is none.
     const PreparedVolume* opaque_part() const;
     const PreparedVolume* kernel_part() const;

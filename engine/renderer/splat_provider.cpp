@@ -182,6 +182,8 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
 double SplatProvider::provide_undivided(const FrameRequest& request) {
     const auto start = Clock::now();
     bool found = false;
+    std::vector<LitVolume> lit;
+    const auto report = cost_.progress;
     for (std::size_t number = 0; number <= added_.size(); ++number) {
         const FrameRequest one = request_of_volume(request, number);
         LevelStore& store = number == 0 ? shown_ : added_[number - 1].shown;
@@ -193,8 +195,13 @@ double SplatProvider::provide_undivided(const FrameRequest& request) {
         std::vector<CollectionPlan> plans;
         std::ranges::transform(parts_of_volume(one), std::back_inserter(plans), planned_collection);
         const CollectionPlan* opaque = plans.size() > 1 ? &plans.front() : nullptr;
-        found = store.provide(plans.back(), opaque, one.scene, cost_) || found;
+        const auto all = static_cast<double>(added_.size() + 1);
+        if (report) cost_.progress = [&, number](double share) { report((static_cast<double>(number) + share) / all); };
+        found = store.provide(plans.back(), opaque, cost_) || found;
+        lit.push_back({&store, one.scene});
     }
+    cost_.progress = report;
+    found = light_volumes(lit, cost_) || found;
     return found ? milliseconds_since(start) : 0;
 }
 

@@ -1,5 +1,7 @@
 #include "engine/store/light.h"
 
+#include <utility>
+
 namespace edgesplat {
 
 Matter::Matter(const Scene& scene) : iso_values(scene.iso_values), transfer(scene.transfer), clip(scene.effects.clip) {
@@ -9,12 +11,19 @@ Matter::Matter(const Scene& scene) : iso_values(scene.iso_values), transfer(scen
         point.color = {};
 }
 
-OcclusionPlan plan_occlusion(const Scene& scene) {
-    return {Matter(scene), scene.effects.occlusion->radius};
+MatterBeside::MatterBeside(const Scene& scene, const Volume& volume)
+    : matter(scene),
+      checksum(volume.checksum),
+      dims(volume.geometry.dims),
+      axes(volume.geometry.index_to_world_axes),
+      origin(volume.geometry.origin) {}
+
+OcclusionPlan plan_occlusion(const Scene& scene, std::vector<MatterBeside> beside) {
+    return {Matter(scene), std::move(beside), scene.effects.occlusion->radius};
 }
 
-ShadowPlan plan_shadows(const Scene& scene) {
-    ShadowPlan plan{Matter(scene), {}};
+ShadowPlan plan_shadows(const Scene& scene, std::vector<MatterBeside> beside) {
+    ShadowPlan plan{Matter(scene), std::move(beside), {}};
     for (const std::size_t i : shadow_lights(scene)) {
         const Light& light = scene.lights[i];
         const bool far = light.kind == Light::Kind::Directional;

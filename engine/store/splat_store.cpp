@@ -420,16 +420,13 @@ void LevelStore::drop_splats() {
     surfaces.drop();
 }
 
-bool LevelStore::provide(const CollectionPlan& plan, const CollectionPlan* opaque, const Scene& scene,
-                         SetupCost& cost) {
+bool LevelStore::provide(const CollectionPlan& plan, const CollectionPlan* opaque, SetupCost& cost) {
     bool ran = volume.provide();
     // Both lists of a mixture are one task for whoever is told how far it is.
     const auto report = cost.progress;
     const auto collect = [&](SplatStore& list, const CollectionPlan& wanted, double from) {
         if (report && opaque) cost.progress = [&, from](double share) { report(from + 0.5 * share); };
-        const bool collected = list.collect(volume, wanted, cost);
-        const bool lit = list.light(volume, scene, cost);
-        ran = ran || collected || lit;
+        ran = list.collect(volume, wanted, cost) || ran;
     };
     if (opaque) {
         collect(surfaces, *opaque, 0);

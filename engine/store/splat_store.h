@@ -45,6 +45,14 @@ struct ResidentBlocks {
     std::future<std::vector<float>> samples;  ///< scaled samples of block `being_read`; invalid if none is being read
 };
 
+struct LevelStore;
+
+/// A volume whose matter attenuates light, with the scene of that matter.
+struct LitVolume {
+    LevelStore* level;
+    Scene scene;
+};
+
 class SplatStore {
   public:
     explicit SplatStore(DeviceSession& session) : session_(&session) {}
@@ -61,9 +69,10 @@ class SplatStore {
     bool collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
     /// Replaces the transfer function by that of a plan for the same lists.
     void classify(const CollectionPlan& wanted);
-    /// Runs passes 2b and 2c if the scene needs them and their plans changed: light among all of the scene's matter,
-    /// also such that the splats do not show. Returns whether any ran.
-    bool light(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
+    /// Runs passes 2b and 2c if the scene needs them and their plans changed: light among all of the matter of the
+    /// scene, which is that of `volume`, also such that the splats do not show; and among that of other volumes.
+    /// Returns whether any ran.
+    bool light(const VolumeStore& volume, const Scene& scene, std::span<const LitVolume> beside, SetupCost& cost);
 
     /// For a volume in blocks: starts an empty list; blocks will be read from `source`.
     void begin_blocks(VolumeStore& volume, std::shared_ptr<const SampleSource> source, const CollectionPlan& wanted);
@@ -95,8 +104,9 @@ class SplatStore {
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 
   private:
-    bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
-    bool cast_shadows(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
+    bool occlude(const VolumeStore& volume, const Scene& scene, std::span<const LitVolume> beside, SetupCost& cost);
+    bool cast_shadows(const VolumeStore& volume, const Scene& scene, std::span<const LitVolume> beside,
+                      SetupCost& cost);
     void recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale, SetupCost& cost);
     void collect_changes(VolumeStore& volume, SetupCost& cost);
     /// Drops all splats and everything stale; allocates the resources of the plan's passes for blocks as large as
@@ -160,13 +170,17 @@ struct LevelStore {
     /// Frees all splats.
     void drop_splats();
 
-    /// For a volume as a whole: runs those of passes 1 to 2c that a picture needs and whose inputs changed. `opaque`:
-    /// of a mixture's opaque matter, else null. `scene`: all matter, which attenuates light. Returns whether any ran.
-    bool provide(const CollectionPlan& plan, const CollectionPlan* opaque, const Scene& scene, SetupCost& cost);
+    /// For a volume as a whole: runs those of passes 1 to 2a that a picture needs and whose inputs changed. `opaque`:
+    /// of a mixture's opaque matter, else null. Returns whether any ran.
+    bool provide(const CollectionPlan& plan, const CollectionPlan* opaque, SetupCost& cost);
 
     VolumeStore volume;
     SplatStore splats;
     SplatStore surfaces;  ///< only of a mixture
 };
+
+/// Finds the light that reaches the splats of a picture's volumes (SplatStore::light); all must be provided. The result
+/// does not depend on their order. Returns whether any pass ran.
+bool light_volumes(std::span<const LitVolume> volumes, SetupCost& cost);
 
 }  // namespace edgesplat

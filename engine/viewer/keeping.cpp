@@ -21,6 +21,11 @@ void save_scene(SceneDocument document, const Volume& volume, const fs::path& pa
         if (fs::exists(split_inner(volume.name).file, error))
             source = fs::proximate(fs::absolute(volume.name), folder).string();
     }
+    for (SceneDocument& entry : document.volumes) {
+        const fs::path beside = fs::proximate(entry.volume.path, fs::absolute(path).parent_path());
+        // Files below the scene's folder move with it.
+        if (!is_builtin(entry.volume.path) && *beside.begin() != "..") entry.volume.path = beside.string();
+    }
     check_path_is_text(document);
     document.output.file.clear();
     const FileContent content{path, scene_text(document)};

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/scene/scene_file.h"
+#include "engine/volume/analytic_volumes.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 
@@ -19,8 +20,16 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
         out.document.volume.path = path;
         out.folders = volume_folders({});
     }
-    for (std::string* file : {&out.document.volume.label_names, &out.document.volume.segmentation})
-        if (!file->empty()) *file = std::filesystem::absolute(find_file(*file, out.folders)).string();
+    const auto settle = [&](VolumeSource& source) {
+        for (std::string* file : {&source.label_names, &source.segmentation})
+            if (!file->empty()) *file = std::filesystem::absolute(find_file(*file, out.folders)).string();
+    };
+    settle(out.document.volume);
+    for (SceneDocument& entry : out.document.volumes) {
+        std::string& of_entry = entry.volume.path;
+        if (!is_builtin(of_entry)) of_entry = std::filesystem::absolute(find_volume(of_entry, out.folders)).string();
+        settle(entry.volume);
+    }
     Volume volume = small_labels_in_memory(read_source(out.document.volume, out.folders, progress));
     if (labels_of(volume) && !volume.packed) out.samples = std::make_shared<const Volume>(volume);
     out.volume = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));

@@ -11,6 +11,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // number o
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
+layout(constant_id = SPEC_BESIDE) const uint BESIDE = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 layout(binding = BIND_LIGHT, scalar) uniform Light { LightParams at; } light;
@@ -30,12 +31,13 @@ float transmittance(vec3 start, vec3 u) {
     int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
     float dl = radius / float(steps);
     // The part of the ray inside the volume's cells, in steps.
-    VolumeEnds ends = volume_ends(start, divisible(u) * dl, params.scene.dims);
+    ivec3 dims = matter_dims();
+    VolumeEnds ends = volume_ends(start, divisible(u) * dl, dims);
     int first = int(ceil(clamp(entry_of(ends) - 0.5, 0.0, 1e6))), last = min(int(ceil(clamp(exit_of(ends) - 0.5, 0.0, 1e6))), steps);
     float tau = 0.0;
     for (int i = first; i < last && tau < DARK; ++i) {
         vec3 p = start + (float(i) + 0.5) * dl * u;
-        ivec3 nearest = clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1);
+        ivec3 nearest = clamp(ivec3(floor(p + 0.5)), ivec3(0), dims - 1);
         tau += dl * extinction_of(imageLoad(volume, nearest).r, vec3(nearest));
     }
     return exp(-tau);
@@ -55,14 +57,14 @@ void main() {
     uint turn = voxel.x * 3518319155u + voxel.y * 2882110345u + voxel.z * 2360945575u;
     float phase = float(turn >> 8u) * (6.28318531 / 16777216.0);
 
-    mat3 to_index = transpose(light.at.normal_to_world);
+    mat3 to_index = world_to_matter();
     vec2 reach = vec2(0.0);
     int faces = is_wall(e, params.scene.band) ? 2 : 1;
     for (int face = 0; face < faces; ++face) {
         SurfacePoint s = surface_point(e, params.scene.band, face == 1, light.at.normal_to_world);
-        if (SURFACES == 0u && CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), light.at.normal_to_world);
+        if (SURFACES == 0u && planes_cut_splats()) s = at_cut(s, e, vec3(voxel), light.at.normal_to_world);
         bool sphere = s.normal == vec3(0.0);
-        vec3 start = vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step;
+        vec3 start = in_matter(vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step);
         mat3 frame = sphere ? mat3(1.0) : frame_of(s.normal);
         vec2 round = vec2(cos(phase), sin(phase));
         float sum = 0.0;
@@ -77,5 +79,7 @@ void main() {
         if (face == 0) reach = vec2(sum / float(OCCLUSION_RAYS));
         else reach.y = sum / float(OCCLUSION_RAYS);
     }
-    UintsRef(light.at.reach).at[i] = packUnorm2x16(reach);
+    uint before = 0u;
+    if (BESIDE == 1u) before = UintsRef(light.at.reach).at[i];
+    UintsRef(light.at.reach).at[i] = kept_share(packUnorm2x16(reach), before);
 }

@@ -11,6 +11,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;  // number of pl
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
+layout(constant_id = SPEC_BESIDE) const uint BESIDE = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 layout(binding = BIND_LIGHT, scalar) uniform Light { LightParams at; } light;
@@ -36,12 +37,12 @@ float transmittance(LightRay ray, float mm) {
 void main() {
     uint i = invocation_number();
     if (i >= light.at.splat_count) return;
-    dims = params.scene.dims;
+    dims = matter_dims();
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
     // Their second distance is an error, and planes cut rays, not splats.
     if (SURFACES == 1u) e.d2 = 1e9;
-    uint nx = uint(dims.x), ny = uint(dims.y);
+    uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);
     vec3 position = vec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny);
     mat3 to_index = transpose(light.at.normal_to_world), to_world = inverse(to_index);
 
@@ -49,16 +50,24 @@ void main() {
     SurfacePoint s = surface_point(e, params.scene.band, false, light.at.normal_to_world);
     // Only the face of a wall that the light sees can be lit.
     if (is_wall(e, params.scene.band) && dot(s.normal, towards) < 0.0) s = surface_point(e, params.scene.band, true, light.at.normal_to_world);
-    if (SURFACES == 0u && CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, position, light.at.normal_to_world);
+    if (SURFACES == 0u && planes_cut_splats()) s = at_cut(s, e, position, light.at.normal_to_world);
     vec3 from = position + s.foot + min(SHADOW_LIFT * s.voxel, s.room) * s.step;
 
     vec3 way = light.at.light.xyz - light.at.light.w * from;
+    if (BESIDE == 1u) {
+        way = light.at.to_matter * way;
+        from = in_matter(from);
+        to_world = inverse(world_to_matter());
+    }
     float way_length = length(way);
     vec3 u = way_length > 0.0 ? way / way_length : vec3(0.0, 0.0, 1.0);
     float mm = SHADOW_STEP * length(to_world * u), reach = 0.0;
     for (int k = 0; k < SHADOW_RAYS; ++k) reach += transmittance(light_ray(from, u, light.at.light.w == 0.0 ? 1e9 : way_length, k, dims), mm);
     uint code = packUnorm2x16(vec2(reach / float(SHADOW_RAYS)));
     // The first light writes both halves, the second its own.
-    if (light.at.channel == 1u) code = bitfieldInsert(code, UintsRef(light.at.reach).at[i], 0, 16);
+    if (BESIDE == 1u || light.at.channel == 1u) {
+        uint before = UintsRef(light.at.reach).at[i], shared_code = kept_share(code, before);
+        code = bitfieldInsert(before, shared_code >> 16 * light.at.channel, int(16u * light.at.channel), 16);
+    }
     UintsRef(light.at.reach).at[i] = code;
 }

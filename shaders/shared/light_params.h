@@ -19,11 +19,20 @@ struct LightParams {
     uint splat_count;
     uint channel;           // of shadows: 0 or 1, the half of the splat's word; 0 is written first
     Address reach;          // (splat_count) uint: 2 x unorm16. Ambient: for the face that the normal points out of, and for the other
+    // Only if the matter is that of another volume. The clip planes are in the index space of the splats' volume.
+    mat3 to_matter;         // from the index space of the splats' volume
+    mat3 to_splats;         // its inverse
+    mat3 matter_normals;    // S^-T of the matter's volume
+    vec3 matter_at;         // the splats' origin, in the matter's index space
+    ivec3 matter_dims;
+    Address matter_transfer;  // its transfer function
+    uint cuts_splats;       // 1: the planes cut the splats' volume
+    uint cuts_matter;       // 1: they cut the matter
 };
 
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::LightParams) == 456);
+static_assert(sizeof(edgesplat::shader::LightParams) == 604);
 #endif
 #endif

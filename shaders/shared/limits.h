@@ -172,7 +172,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_LABELS, 45u)       /* every label has its own colour: LABELS_OF_MASK or LABELS_OF_SCAN; 0: none have */ \
     X(SPEC_SURFACES, 46u)     /* 1: splats are surface splats */ \
     X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */ \
-    X(SPEC_MIXED, 48u)        /* 1: surface splats draw opaque matter, kernels translucent matter in front of it */
+    X(SPEC_MIXED, 48u)        /* 1: surface splats draw opaque matter, kernels translucent matter in front of it */ \
+    X(SPEC_BESIDE, 49u)       /* 1: the matter that attenuates light is that of another volume than the splats' */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -35,6 +35,7 @@ PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm:
     s.volume = *sampled(dims, f);
     s.scene.iso_values = {0.25, 0.75};
     s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, haze}, {{1, 1, 1}, 5}};
+    s.settings.opaque = OpaqueMatter::Kernels;
     return s;
 }
 
@@ -66,8 +67,8 @@ TEST(CastShadows, MatchesTheReference) {
             for (std::size_t i = 0; i < got.records.size(); i += 11) {
                 const auto& record = got.records[i];
                 const auto point = reference::lit_point(record, field, geometry, band, light);
-                const double want =
-                    reference::light_reach(point, record.voxel, field, scaled, s.scene, geometry, light);
+                const double want = reference::light_reach(point, field.voxel(record.voxel), geometry,
+                                                           {field, scaled, s.scene, geometry}, light);
                 const double difference = std::abs((second ? got.second[i] : got.first[i]) - want);
                 low = std::min(low, want);
                 high = std::max(high, want);

@@ -25,17 +25,17 @@ struct DeviceUnderTest {
         for (const AddedVolume& beside : scene.added)
             added.emplace_back(session).volume.hold(beside.volume, 0);
         bool ran = false;
+        std::vector<LitVolume> lit;
         for (std::size_t number = 0; number <= added.size(); ++number) {
             const FrameRequest one = request_of_volume(request, number);
             std::vector<CollectionPlan> plans;
             for (const FrameRequest& part : keep_buried ? std::vector{one} : parts_of_volume(one))
                 plans.push_back(plan_collection(*part.volume, part.scene, drawn_settings(part), keep_buried,
                                                 part.whole ? &*part.whole : nullptr));
-            ran =
-                level_of(number).provide(plans.back(), plans.size() > 1 ? &plans.front() : nullptr, one.scene, cost) ||
-                ran;
+            ran = level_of(number).provide(plans.back(), plans.size() > 1 ? &plans.front() : nullptr, cost) || ran;
+            lit.push_back({&level_of(number), one.scene});
         }
-        return ran;
+        return light_volumes(lit, cost) || ran;
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {

@@ -101,6 +101,25 @@ std::vector<PassScene> scenes() {
     add("eye between", [](PassScene& s) {
         s.camera = {.eye = {1, -13, 3}, .direction = {2, 10, -2}, .up = {0, 0, 1}, .fov_y = 90};
     });
+    add("shadowed", [](PassScene& s) {
+        s.scene.lights[0] = directional_light({0.8, -0.5, 0.3});
+        s.scene.lights[0].shadows = true;
+        s.scene.lights.push_back({.kind = Light::Kind::Point, .position = {40, -30, 10}, .shadows = true});
+    });
+    add("occluded", [](PassScene& s) {
+        s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
+        s.scene.ambient = 0.8;
+    });
+    add("shaded in a shell", [](PassScene& s) {
+        // Kernels, cut by a plane that does not cut the other volume, attenuate its light and it theirs.
+        s.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
+        s.scene.effects.clip.keep = {{{2, -2, 0}, {0.2, -1, 0.3}}};
+        s.scene.added = {added(ball({3, -1, 0.5}, 5, kOblique), {0}, {solid({1, 0.8, 0.5})})};
+        s.scene.added[0].clipped = false;
+        s.scene.lights[0].shadows = true;
+        s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
+        s.scene.ambient = 0.5;
+    });
     add("outlines", [](PassScene& s) { s.scene.effects.smooth_outlines = true; });
     add("refined", [](PassScene& s) {
         s.settings.pixels = PixelChoice::Refined;
@@ -226,6 +245,52 @@ TEST(SeveralVolumes, OfOneObjectShowThatObject) {
     EXPECT_GE(decibels_of_most(two, want, 4, 1), 50);
 }
 
+/// Light that both take is as if one volume had the matter of both.
+TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
+    constexpr glm::dvec3 kMiddle(0, 4, 13);
+    PassScene two = two_balls();
+    two.scene.added[0] = added(ball(kMiddle, 4, kOblique), {0}, {two.scene.materials[1]});
+    two.camera = {.eye = {9, -40, 45}, .direction = {-9, 41, -40}, .up = {0, 0, 1}, .fov_y = 30};
+    PassScene one = two;
+    one.scene.added.clear();
+    VolumeGeometry& geometry = one.volume.geometry;
+    geometry.dims = {24, 24, 34};
+    geometry.origin = {-11.3, -11.4, -11.2};
+    one.volume.values.clear();
+    for (int z = 0; z < geometry.dims.z; ++z)
+        for (int y = 0; y < geometry.dims.y; ++y)
+            for (int x = 0; x < geometry.dims.x; ++x) {
+                const glm::dvec3 at = geometry.to_world(glm::dvec3(x, y, z));
+                one.volume.values.push_back(
+                    static_cast<float>(std::max(8 - glm::length(at), 4 - glm::length(at - kMiddle))));
+            }
+    finish_volume(one.volume);
+    const auto compare = [&](const char* name, double least, const auto& change) {
+        PassScene a = two, b = one, alone = two;
+        for (PassScene* s : {&a, &b, &alone})
+            change(s->scene);
+        alone.scene.lights[0].shadows = false;
+        alone.scene.effects.occlusion.reset();
+        const auto together = drawn(a), whole = drawn(b), unshaded = drawn(alone);
+        std::vector<float> want;
+        for (const glm::vec4& pixel : whole)
+            want.insert(want.end(), &pixel.x, &pixel.x + 4);
+        const double psnr = decibels_of_most(together, want, 4, 1), without = decibels_of_most(unshaded, want, 4, 1);
+        std::printf("%-10s %.1f dB, with light from everywhere %.1f dB\n", name, psnr, without);
+        EXPECT_GE(psnr, least);
+        EXPECT_GE(psnr, without + 8);
+    };
+    compare("shadows", 30, [](Scene& scene) {
+        scene.lights[0] = directional_light({0, 0.5, 1});
+        scene.lights[0].shadows = true;
+    });
+    compare("occlusion", 30, [](Scene& scene) {
+        scene.lights[0].intensity = 0;
+        scene.ambient = 1;
+        scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 12};
+    });
+}
+
 /// A volume without matter changes no bit.
 TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
     for (PassScene s : scenes()) {
@@ -261,8 +326,6 @@ TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
         HasSubstr("expected at most one such volume"));
     EXPECT_THAT(refusal([](PassScene& s) { s.settings.opaque = OpaqueMatter::Kernels; }),
                 HasSubstr("opaque = surfaces"));
-    EXPECT_THAT(refusal([](PassScene& s) { s.scene.effects.occlusion.emplace(); }), HasSubstr("effects.occlusion"));
-    EXPECT_THAT(refusal([](PassScene& s) { s.scene.lights[0].shadows = true; }), HasSubstr("lights"));
     EXPECT_THAT(refusal([](PassScene&) {}, {.tau = true}), HasSubstr("tau"));
     EXPECT_THAT(refusal([](PassScene& s) {
                     s.scene.added[0].iso_values = {3, 1};
