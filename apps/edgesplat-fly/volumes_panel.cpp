@@ -36,9 +36,8 @@ void matter(AppState& state, std::size_t i) {
     const edgesplat::Volume& volume = *added.volume;
     const edgesplat::Material& top = added.materials.back();
     if (!volume.is_label_mask()) {
-        color(state, "##colour", top.color, [&](SceneDocument& d, const glm::dvec3& v) {
-            written_out(d, added, i).materials.back().color = v;
-        });
+        color(state, "##colour", top.color,
+              [&](SceneDocument& d, const glm::dvec3& v) { written_out(d, added, i).materials.back().color = v; });
         const double low = volume.in_file_unit(static_cast<double>(volume.min_value));
         const double high = volume.in_file_unit(static_cast<double>(volume.max_value));
         const double gap = edgesplat::viewer::kIsoGap * (high - low);
@@ -71,17 +70,20 @@ void volumes_panel(AppState& state) {
     {
         const Scope scope(state, "volume0");
         ImGui::TextUnformatted(short_name(session.document().volume.path).c_str());
-        switches(state, session.document().volume, [](SceneDocument& d) -> auto& { return d.volume; });
+        switches(
+            state, session.document().volume, [](SceneDocument & d) -> auto& { return d.volume; });
     }
     for (std::size_t i = 0; i < session.document().volumes.size(); ++i) {
         const Scope scope(state, fmt::format("volume{}", i + 1));
         const SceneDocument entry = session.document().volumes[i];
         ImGui::Separator();
         ImGui::TextUnformatted(short_name(entry.volume.path).c_str());
-        switches(state, entry.volume, [i](SceneDocument& d) -> auto& { return d.volumes[i].volume; });
+        switches(
+            state, entry.volume, [i](SceneDocument & d) -> auto& { return d.volumes[i].volume; });
         ImGui::SameLine();
         if (button(state, "remove")) {
-            session.edit([i](SceneDocument& d) { d.volumes.erase(d.volumes.begin() + static_cast<std::ptrdiff_t>(i)); });
+            session.edit(
+                [i](SceneDocument& d) { d.volumes.erase(d.volumes.begin() + static_cast<std::ptrdiff_t>(i)); });
             break;
         }
         if (entry.volume.visible && i < session.scene().added.size()) matter(state, i);

@@ -202,6 +202,13 @@ bool has_opaque_matter(const FrameRequest& part) {
 /// Throws Error if a picture of several volumes has what they cannot be drawn with.
 void check_several(const FrameRequest& request) {
     if (request.outputs.tau) fail("output tau: is of one volume, but the scene has several");
+    const bool lit = occludes_ambient(request.scene) || !shadow_lights(request.scene).empty();
+    for (const AddedVolume& added : request.scene.added)
+        if (added.replaces && lit)
+            fail(
+                "volumes: {} replaces the others within its grid (rule = inside), which light does not know; expected "
+                "no ambient occlusion and no shadows",
+                added.volume->name);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/scene/checks.h"
+#include "engine/volume/volume.h"
 
 namespace edgesplat {
 
@@ -119,6 +120,24 @@ std::string raycast_obstacle(const Scene& scene) {
     return "";
 }
 
+namespace {
+
+/// Planes through the sides of a grid, half a voxel beyond its outermost samples. Their normals point outwards.
+std::vector<Plane> sides_of(const VolumeGeometry& geometry) {
+    std::vector<Plane> planes;
+    const glm::dmat3 normals = glm::transpose(glm::inverse(geometry.index_to_world_axes));
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0}) {
+            const glm::dvec3 middle = 0.5 * glm::dvec3(geometry.dims - 1);
+            glm::dvec3 at = middle;
+            at[axis] += side * 0.5 * geometry.dims[axis];
+            planes.push_back({geometry.to_world(at), side * unit(normals[axis])});
+        }
+    return planes;
+}
+
+}  // namespace
+
 Scene scene_of_volume(const Scene& scene, std::size_t number) {
     Scene one = scene;
     one.added.clear();
@@ -132,6 +151,13 @@ Scene scene_of_volume(const Scene& scene, std::size_t number) {
     }
     if (!one.clipped) one.effects.clip = {};
     one.clipped = true;
+    for (std::size_t i = 0; i < scene.added.size(); ++i) {
+        if (i + 1 == number || !scene.added[i].replaces) continue;
+        if (!one.effects.clip.remove.empty())
+            fail("volumes[{}]: replaces the others within its grid, but another region is removed, too; expected one",
+                 i);
+        one.effects.clip.remove = sides_of(scene.added[i].volume->geometry);
+    }
     return one;
 }
 

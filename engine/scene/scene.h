@@ -76,6 +76,7 @@ struct AddedVolume {
     std::vector<TransferPoint> transfer;
     std::vector<glm::dvec3> label_colors;
     bool clipped = true;
+    bool replaces = false;  ///< within its grid, the other volumes have no matter
     bool operator==(const AddedVolume&) const = default;
 };
 
@@ -97,7 +98,8 @@ struct Scene {
     std::vector<AddedVolume> added;  ///< at most kMaxVolumes - 1
 };
 
-/// The scene with one of its volumes alone. `number`: 0 is the first, the others follow in the order of `added`.
+/// The scene with one of its volumes alone, without the region in which another one replaces it. `number`: 0 is the
+/// first, the others follow in the order of `added`. Throws Error if two regions would be removed.
 Scene scene_of_volume(const Scene& scene, std::size_t number);
 
 /// Whether some value is matter.

@@ -19,6 +19,9 @@
 
 namespace edgesplat {
 
+/// What is seen where volumes overlap: the matter of both; or within this volume's grid only its own.
+enum class VolumeRule { Add, Inside };
+
 /// The volume, its preprocessing (threshold or labels, box filter, crop, in this order) and its place in the scene.
 struct VolumeSource {
     std::string path;                               ///< file, folder, pattern of slices, or builtin:NAME
@@ -37,7 +40,8 @@ struct VolumeSource {
     std::vector<double> transform;  ///< 4 x 4, row by row: moves the volume in the world; empty: not moved
     bool visible = true;            ///< whether its matter is drawn
     bool clip = true;               ///< whether the scene's clip planes cut it
-    std::string checksum;           ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
+    VolumeRule rule = VolumeRule::Add;
+    std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
     bool operator==(const VolumeSource&) const = default;
 };
 

@@ -16,7 +16,12 @@ namespace fs = std::filesystem;
 
 class Checker {
   public:
-    Checker(const SceneDocument& document, const std::vector<fs::path>& folders) : d_(document), folders_(folders) {}
+    /// `added`: the document is an entry of `volumes`.
+    Checker(const SceneDocument& document, const std::vector<fs::path>& folders, bool added = false)
+        : d_(document), folders_(folders) {
+        if (!added && d_.volume.rule != VolumeRule::Add)
+            add("volume.rule", "\"inside\" is for a volume beside the first; expected it in an entry of [[volumes]]");
+    }
 
     std::vector<DocumentProblem> run() {
         check_volume();
@@ -29,7 +34,7 @@ class Checker {
         check_movie();
         check_output();
         for (std::size_t i = 0; i < d_.volumes.size(); ++i)
-            for (const DocumentProblem& problem : problems_of(d_.volumes[i], folders_))
+            for (const DocumentProblem& problem : Checker(d_.volumes[i], folders_, true).run())
                 problems_.push_back({fmt::format("volumes[{}].{}", i, problem.path), problem.text});
         return std::move(problems_);
     }

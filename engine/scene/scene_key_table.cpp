@@ -93,6 +93,10 @@ void add_volume(KeyTable& t) {
            .absent = "the file's place"});
     t.add("volume.visible", MEMBER(volume.visible), {.help = "Draw the volume's matter"});
     t.add("volume.clip", MEMBER(volume.clip), {.help = "Clip planes cut the volume"});
+    t.add("volume.rule", MEMBER(volume.rule),
+          {.help = "Of a volume beside the first, where others overlap it: add: the matter of both is drawn; inside: "
+                   "within its grid only its own, as of a finer scan",
+           .choices = {"add", "inside"}});
     t.add("volume.checksum", MEMBER(volume.checksum),
           {.help = "Checksum of the preprocessed samples; other samples are refused", .absent = "any"});
 }

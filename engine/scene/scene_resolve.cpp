@@ -268,7 +268,8 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
         try {
             Scene one = resolved_alone(entry, *entry.read->volume, i + 1);
             scene.added.push_back({entry.read->volume, std::move(one.iso_values), std::move(one.materials),
-                                   std::move(one.transfer), std::move(one.label_colors), one.clipped});
+                                   std::move(one.transfer), std::move(one.label_colors), one.clipped,
+                                   entry.volume.rule == VolumeRule::Inside && entry.volume.visible});
         } catch (const Error& error) {
             fail("volumes[{}]: {}", i, error.what());
         }

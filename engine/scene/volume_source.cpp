@@ -116,6 +116,7 @@ void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders,
     const auto what_is_read = [](const SceneDocument& entry) {
         VolumeSource source = entry.volume;
         source.visible = source.clip = true;
+        source.rule = VolumeRule::Add;
         return std::pair(source, entry.iso_values);
     };
     for (std::size_t i = 0; i < document.volumes.size(); ++i) {

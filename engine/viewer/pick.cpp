@@ -231,7 +231,37 @@ std::vector<Stretch> stretches(const Volume& volume, const Scene& scene, const I
 
 }  // namespace
 
+const Volume& volume_of(const Volume& first, const Scene& scene, std::size_t number) {
+    return number == 0 || number > scene.added.size() ? first : *scene.added[number - 1].volume;
+}
+
+std::vector<ValueThere> values_at(const Volume& volume, const Scene& scene, const glm::dvec3& place) {
+    std::vector<ValueThere> values;
+    for (std::size_t number = 0; number <= scene.added.size(); ++number) {
+        const Volume& one = volume_of(volume, scene, number);
+        const glm::dvec3 voxel = one.geometry.to_index(place), last(one.geometry.dims - 1);
+        if (!glm::all(glm::greaterThanEqual(voxel, glm::dvec3(-0.5))) ||
+            !glm::all(glm::lessThanEqual(voxel, last + 0.5)))
+            continue;
+        values.push_back({number, voxel, interpolated(one, voxel)});
+    }
+    return values;
+}
+
 std::optional<Pick> pick(const Volume& volume, const Scene& scene, const Ray& world_ray, double opacity) {
+    if (!scene.added.empty()) {
+        validate(scene);
+        std::optional<Pick> nearest;
+        for (std::size_t number = 0; number <= scene.added.size(); ++number) {
+            const Scene one = scene_of_volume(scene, number);
+            if (!has_matter(one)) continue;
+            const auto found = pick(volume_of(volume, scene, number), one, world_ray, opacity);
+            if (!found || (nearest && nearest->distance <= found->distance)) continue;
+            nearest = found;
+            nearest->number = number;
+        }
+        return nearest;
+    }
     if (!(opacity > 0 && opacity < 1)) fail("pick opacity: {}, expected a number between 0 and 1", opacity);
     validate(scene);
     const VolumeGeometry& geometry = volume.geometry;

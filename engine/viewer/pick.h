@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
@@ -19,12 +20,27 @@ struct Pick {
     double value = 0;        ///< interpolated at that place
     double distance = 0;     ///< mm from the eye
     double uncertainty = 0;  ///< mm along the ray, in either direction
+    std::size_t number = 0;  ///< of the volume (scene_of_volume), whose voxel, value and material these are
     int material = 0;        ///< of the matter behind the surface: number of iso-values <= its value
     glm::dvec3 normal{0};    ///< unit, world, towards the eye
 };
 
-/// The place on the ray where the accumulated opacity first reaches `opacity`, in (0, 1); nullopt if it never does.
-/// Values are trilinear. Extinction (per mm) comes from material or transfer function. Clip planes cut.
+/// A volume's value at a place.
+struct ValueThere {
+    std::size_t number = 0;  ///< of the volume
+    glm::dvec3 voxel{0};
+    double value = 0;  ///< trilinear
+};
+
+/// The values of all of the scene's volumes whose grids hold the place (world mm).
+std::vector<ValueThere> values_at(const Volume& volume, const Scene& scene, const glm::dvec3& place);
+
+/// A volume of the scene by its number; the first one if there is none.
+const Volume& volume_of(const Volume& first, const Scene& scene, std::size_t number);
+
+/// The nearest such place of the scene's volumes. Of one volume it is the place on the ray where the accumulated
+/// opacity first reaches `opacity`, in (0, 1); nullopt if it never does. Values are trilinear. Extinction (per mm)
+/// comes from material or transfer function. Clip planes cut.
 ///
 /// In solid matter (one voxel absorbs half of the light, as in Walls) the place is the surface through which the ray
 /// entered that matter. The uncertainty depends on the surface. Iso-contour (computed to 1e-9 voxel): twice the

@@ -343,6 +343,16 @@ std::vector<ImageCase> reference_cases() {
     core.scene.materials.back().extinction = 8;
     cases.push_back({"opaque torus behind translucent matter", core});
     cases.push_back({"opaque torus behind translucent matter, normals", core, Output::Normal});
+    Shot several = core;
+    auto beside = std::make_shared<Volume>(*core.volume);
+    beside->geometry.index_to_world_axes *= glm::dmat3({0.5, 0.2, 0}, {-0.2, 0.6, 0.1}, {0.1, 0, -0.5});
+    beside->geometry.origin += core.volume->geometry.center() - beside->geometry.center() + glm::dvec3(5, -8, 4);
+    several.scene.added = {{.volume = beside,
+                            .iso_values = {core.scene.iso_values.back()},
+                            .materials = {{}, {{0.4, 0.6, 1}, 20}},
+                            .transfer = {},
+                            .label_colors = {}}};
+    cases.push_back({"opaque torus and another one on its own grid", several});
     cases.push_back({"oblique orbital, normals", oblique_orbital(), Output::Normal});
     cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
     for (ImageCase& c : later_cases())

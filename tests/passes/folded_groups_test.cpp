@@ -70,6 +70,15 @@ std::vector<FoldedCase> folded_cases() {
     mixed.scene.materials.back().extinction = 8;
     mixed.settings.opaque = OpaqueMatter::Surfaces;
     cases.push_back({mixed, {80, 60}});
+    PassScene several = mixed;
+    auto beside = std::make_shared<Volume>(several.volume);
+    beside->geometry.origin += glm::dvec3(3, 4, 5);
+    several.scene.added = {{.volume = beside,
+                            .iso_values = {several.scene.iso_values.back()},
+                            .materials = {{}, several.scene.materials.back()},
+                            .transfer = {},
+                            .label_colors = {}}};
+    cases.push_back({several, {80, 60}});
     PassScene shaded = pass_scenes()[0];
     shaded.scene.lights = {directional_light({0.3, -1, 0.5})};
     shaded.scene.lights[0].shadows = true;

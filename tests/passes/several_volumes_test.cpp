@@ -291,6 +291,66 @@ TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
     });
 }
 
+/// A coarse scan of the whole, a fine one of two thirds: the picture is that of the fine whole, without a seam.
+TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
+    PassScene fine;
+    fine.volume = sample(torus_scene({56, 52, 40}, {27.3, 25.6, 19.4}, 15.2, 7.6));
+    fine.scene.iso_values = {0.5};
+    fine.scene.materials = {{}, solid({1, 0.8, 0.5})};
+    fine.settings.pixels = PixelChoice::Every;
+    fine.camera = {.eye = {30, -50, 62}, .direction = {-3, 75, -43}, .up = {0, 0, 1}, .fov_y = 34};
+    PassScene both = fine;
+    both.volume = halved(fine.volume);
+    constexpr int kLast = 36;
+    both.scene.added = {added(std::make_shared<const Volume>(cropped(fine.volume, {0, 0, 0}, {kLast, 51, 39})), {0.5},
+                              {fine.scene.materials[1]})};
+    both.scene.added[0].replaces = true;
+    PassScene coarse = both;
+    coarse.scene.added.clear();
+    const auto want = drawn(fine), depths = drawn(fine, shader::PAYLOAD_DEPTH_DISTANCE), got = drawn(both),
+               whole_coarse = drawn(coarse);
+    const reference::View view(fine.camera, fine.volume.geometry, kSize.x, kSize.y);
+    struct Part {
+        int pixels = 0, off = 0;  // by more than a hundredth of full scale
+        double squares = 0;
+        void add(const glm::vec4& by) {
+            ++pixels;
+            squares += static_cast<double>(glm::dot(by, by)) / 4;
+            off += std::max({std::abs(by.r), std::abs(by.g), std::abs(by.b), std::abs(by.a)}) > 0.01F ? 1 : 0;
+        }
+        double decibels() const { return -10 * std::log10(squares / pixels + 1e-20); }
+    };
+    Part in_fine, at_seam, beyond;
+    for (int y = 1; y + 1 < kSize.y; ++y)
+        for (int x = 1; x + 1 < kSize.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * kSize.x + x);
+            const auto inner = [&](std::size_t at) { return want[at].a > 0.999F; };
+            // Where a ray only touches the torus, it sees all of it or nothing.
+            const auto width = static_cast<std::size_t>(kSize.x);
+            if (!inner(i) || !inner(i - 1) || !inner(i + 1) || !inner(i - width) || !inner(i + width)) continue;
+            const glm::dvec3 u = view.ray(x, y);
+            const double depth = static_cast<double>(depths[i].x);
+            const glm::dvec3 at = view.eye_index + u * (depth / glm::dot(u, view.frame.forward));
+            const double beside = at.x - (kLast + 0.5);  // of the cut, voxels
+            // At the seam nothing is seen that neither scan shows: what counts is how far a colour is from both.
+            const glm::vec4 low = glm::min(want[i], whole_coarse[i]), high = glm::max(want[i], whole_coarse[i]);
+            if (beside < -1.5)
+                in_fine.add(got[i] - want[i]);
+            else if (beside < 1.5)
+                at_seam.add(got[i] - glm::clamp(got[i], low, high));
+            else
+                beyond.add(got[i] - whole_coarse[i]);
+        }
+    std::printf("fine part %.1f dB; seam %.1f dB, off %d of %d; coarse part %.1f dB\n", in_fine.decibels(),
+                at_seam.decibels(), at_seam.off, at_seam.pixels, beyond.decibels());
+    EXPECT_GT(in_fine.pixels, 300);
+    EXPECT_GT(at_seam.pixels, 40);
+    EXPECT_GT(beyond.pixels, 100);
+    EXPECT_GE(in_fine.decibels(), 60);
+    EXPECT_GE(beyond.decibels(), 60);
+    EXPECT_GE(at_seam.decibels(), 38);
+}
+
 /// A volume without matter changes no bit.
 TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
     for (PassScene s : scenes()) {
@@ -331,6 +391,16 @@ TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
                     s.scene.added[0].iso_values = {3, 1};
                 }),
                 HasSubstr("volumes[0]: scene iso_values"));
+    EXPECT_THAT(refusal([](PassScene& s) {
+                    s.scene.added[0].replaces = true;
+                    s.scene.effects.clip.remove = {{{0, 0, 0}, {1, 0, 0}}};
+                }),
+                HasSubstr("another region is removed"));
+    EXPECT_THAT(refusal([](PassScene& s) {
+                    s.scene.added[0].replaces = true;
+                    s.scene.effects.occlusion.emplace();
+                }),
+                HasSubstr("rule = inside"));
     EXPECT_THAT(refusal([](PassScene& s) { s.scene.added[0].volume = nullptr; }), HasSubstr("volumes[0]"));
     EXPECT_THAT(refusal([](PassScene& s) { s.scene.added.resize(16, s.scene.added[0]); }), HasSubstr("at most 16"));
     EXPECT_EQ(refusal([](PassScene& s) { s.scene.added.resize(15, s.scene.added[0]); }), "");

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/views.h"
@@ -83,6 +85,11 @@ TEST(SceneVolumes, HaveProblemsWithTheirLines) {
     EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\noutput.renderer = \"truth\"\n"
                          "[[volumes]]\nvolume.path = \"builtin:box\"\n"),
                 Contains(HasSubstr("draws one volume")));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\nvolume.rule = \"inside\"\n"),
+                Contains(HasSubstr("a.toml:2: volume.rule")));
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\n[[volumes]]\nvolume.path = \"builtin:box\"\n"
+                         "volume.rule = \"inside\"\n"),
+                testing::IsEmpty());
     EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\nvolume.transform = [1, 2]\n"),
                 Contains(HasSubstr("expected a list of 16 numbers")));
 }
@@ -195,6 +202,28 @@ TEST(SceneVolumes, AreWrittenOutWithEveryChoice) {
     const Scene whole = resolve_scene(alone, sphere);
     EXPECT_TRUE(whole.effects.clip.empty());
     EXPECT_EQ(resolved(alone, sphere, whole, camera, {}).effects.clip.keep.size(), 1U);
+}
+
+/// A volume that replaces the others removes them within its grid, unless it is hidden.
+TEST(SceneVolumes, ReplaceTheOthersInside) {
+    Volume first;
+    SceneDocument document = read(kText, first);
+    document.volumes[0].volume.rule = VolumeRule::Inside;
+    const Scene scene = resolve_scene(document, first);
+    const auto planes = scene_of_volume(scene, 0).effects.clip.remove;
+    ASSERT_EQ(planes.size(), 6U);
+    const VolumeGeometry& geometry = scene.added[0].volume->geometry;
+    const glm::dvec3 last(geometry.dims - 1);
+    const auto removed = [&](const glm::dvec3& voxel) {
+        return std::ranges::all_of(planes, [&](const Plane& plane) {
+            return glm::dot(plane.normal, geometry.to_world(voxel) - plane.point) < 0;
+        });
+    };
+    EXPECT_TRUE(removed(-glm::dvec3(0.49)) && removed(last + 0.49));
+    EXPECT_FALSE(removed({-0.51, 1, 1}) || removed({1, last.y + 0.51, 1}) || removed({1, 1, last.z + 0.51}));
+    EXPECT_TRUE(scene_of_volume(scene, 1).effects.clip.remove.empty());
+    document.volumes[0].volume.visible = false;
+    EXPECT_TRUE(scene_of_volume(resolve_scene(document, first), 0).effects.clip.remove.empty());
 }
 
 /// A named view frames the matter of all volumes.

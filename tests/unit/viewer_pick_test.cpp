@@ -10,6 +10,7 @@
 #include <iostream>
 #include <string>
 
+#include "engine/volume/analytic_volumes.h"
 #include "engine/volume/pack_volume.h"
 #include "tests/unit/refusal.h"
 #include "tests/unit/viewer_random.h"
@@ -330,6 +331,41 @@ TEST(ViewerScreen, MapsPixelsToRays) {
     EXPECT_FALSE(project(camera, size, {1, 1, 3}));
     EXPECT_FALSE(project(camera, size, {5, 2, 3}));
     EXPECT_NEAR(pixel_size(camera, size, 10), 0.1, 1e-12);
+}
+
+/// Of several volumes the nearest surface is picked, with the values of that volume.
+TEST(ViewerPick, FindsTheNearestOfSeveralVolumes) {
+    const Volume far = builtin_volume("builtin:sphere:32");
+    auto near = std::make_shared<Volume>(builtin_volume("builtin:sphere:20"));
+    const double radius = glm::length(near->geometry.center() - near->geometry.to_world(glm::dvec3(0)));
+    near->geometry.origin += glm::dvec3(0, -200, 0) + far.geometry.center() - near->geometry.center();
+    Scene scene;
+    scene.iso_values = {0.5};
+    scene.materials = {{}, {.extinction = 8}};
+    scene.added = {{.volume = near, .iso_values = {0.4}, .materials = scene.materials, .transfer = {}, .label_colors = {}}};
+    const Ray ray{far.geometry.center() - glm::dvec3(0, 1000, 0), {0, 1, 0}};
+    const auto first = pick(far, scene, ray);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->number, 1U);
+    EXPECT_NEAR(first->value, 0.4, 1e-6);
+    EXPECT_LT(glm::length(first->world - near->geometry.center()), radius);
+    EXPECT_LT(glm::length(near->geometry.to_world(first->voxel) - first->world), 1e-9);
+    EXPECT_EQ(&volume_of(far, scene, first->number), near.get());
+    scene.added[0].materials[1].extinction = 0;
+    const auto behind = pick(far, scene, ray);
+    ASSERT_TRUE(behind);
+    EXPECT_EQ(behind->number, 0U);
+    EXPECT_NEAR(behind->value, 0.5, 1e-6);
+
+    const auto there = values_at(far, scene, behind->world);
+    ASSERT_EQ(there.size(), 1U);
+    EXPECT_NEAR(there[0].value, 0.5, 1e-6);
+    near->geometry.origin += glm::dvec3(0, 200, 0);
+    const auto both = values_at(far, scene, far.geometry.center());
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[1].number, 1U);
+    EXPECT_GT(both[1].value, 0.9);
+    EXPECT_TRUE(values_at(far, scene, {1e6, 0, 0}).empty());
 }
 
 }  // namespace
