@@ -47,6 +47,20 @@ void place_in_scene(edgesplat::VolumeSource& volume, const std::vector<fs::path>
         if (!file->empty()) *file = path_in_scene(*file, folder);
 }
 
+/// Writes out the surfaces and materials of a volume. `scene`: of the volume alone.
+void write_out_matter(edgesplat::SceneDocument& document, const edgesplat::Scene& scene,
+                      const edgesplat::Volume& volume) {
+    if (!document.volume.visible) return;
+    write_out_materials(document, scene, volume);
+    document.iso_sigmas.clear();
+    // Leave open what the user did not choose: the material below all surfaces, and the colours of labels.
+    if (document.below == choice_of(edgesplat::Material{.color = glm::dvec3(0)})) document.below = {};
+    if (!scene.transfer.empty()) {
+        document.transfer = scene.transfer;
+        document.materials.clear();
+    }
+}
+
 void run_new(const NewOptions& options) {
     if (!options.output.empty()) edgesplat::check_output_path(options.output, kSceneExtensions);
     edgesplat::SceneDocument document;
@@ -57,14 +71,9 @@ void run_new(const NewOptions& options) {
     edgesplat::Volume volume = load_with_progress(document, folders, false);
     const edgesplat::Scene scene = resolve_scene(document, volume);
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
-    write_out_materials(document, scene, volume);
-    document.iso_sigmas.clear();
-    // Leave open what the user did not choose: the material below all surfaces, and the colours of labels.
-    if (document.below == choice_of(edgesplat::Material{.color = glm::dvec3(0)})) document.below = {};
-    if (!scene.transfer.empty()) {
-        document.transfer = scene.transfer;
-        document.materials.clear();
-    }
+    write_out_matter(document, scene, volume);
+    for (std::size_t i = 0; i < document.volumes.size(); ++i)
+        write_out_matter(document.volumes[i], scene_of_volume(scene, i + 1), *scene.added[i].volume);
     // The same camera, bit for bit, as numbers that can be edited.
     document.camera = {.eye = camera.eye, .direction = camera.direction, .up = camera.up, .fov = camera.fov_y};
     const fs::path folder = fs::path(options.output).parent_path();

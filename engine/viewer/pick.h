@@ -38,9 +38,9 @@ std::vector<ValueThere> values_at(const Volume& volume, const Scene& scene, cons
 /// A volume of the scene by its number; the first one if there is none.
 const Volume& volume_of(const Volume& first, const Scene& scene, std::size_t number);
 
-/// The nearest such place of the scene's volumes. Of one volume it is the place on the ray where the accumulated
-/// opacity first reaches `opacity`, in (0, 1); nullopt if it never does. Values are trilinear. Extinction (per mm)
-/// comes from material or transfer function. Clip planes cut.
+/// The place on the ray where the accumulated opacity of one of the scene's volumes, the nearest, first reaches
+/// `opacity`, in (0, 1); nullopt if it never does. Values are trilinear. Extinction (per mm) comes from material or
+/// transfer function. Clip planes cut.
 ///
 /// In solid matter (one voxel absorbs half of the light, as in Walls) the place is the surface through which the ray
 /// entered that matter. The uncertainty depends on the surface. Iso-contour (computed to 1e-9 voxel): twice the

@@ -51,7 +51,7 @@ FrameRequest with_effects(const EffectSet& effects) {
 /// Effects that another one switches off, and why.
 bool excludes(std::string_view off, std::string_view by) {
     // Optical depth sums all matter on a ray, buried or not.
-    if (off == "buried voxels") return by == "output tau" || by == "surface splats";
+    if (off == "buried voxels") return by == "output tau" || by == "surface splats" || by == "several volumes";
     // Kernels draw these, and optical depth.
     const bool surfaces = off == "surface splats" || off == "opaque behind translucent";
     if (surfaces && (by == "antialias" || by == "transfer function" || by == "sliced sheets" || by == "output tau" ||

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 
 #include "engine/reference/reference_renderer.h"
@@ -365,7 +366,67 @@ TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
     }
 }
 
-/// What cannot be drawn together is said.
+/// Whatever lies beside a volume, the picture is finite, and opacities are shares.
+TEST(SeveralVolumes, GiveFiniteNumbers) {
+    const auto far = [](double by) {
+        auto moved = std::make_shared<Volume>(*ball({0, 0, 0}, 6, kOblique));
+        moved->geometry.origin.x += by;
+        return moved;
+    };
+    const auto with_holes = [] {
+        auto holed = std::make_shared<Volume>(*ball({7, -3, 2}, 6, kOblique));
+        for (std::size_t i = 0; i < holed->values.size(); i += 7)
+            holed->values[i] =
+                i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+        finish_volume(*holed);
+        return holed;
+    };
+    const auto slice = [] {
+        auto flat = std::make_shared<Volume>();
+        flat->geometry.dims = {9, 9, 1};
+        flat->geometry.origin = {-4, -12, 0};
+        for (int i = 0; i < 81; ++i)
+            flat->values.push_back(static_cast<float>(i % 9 > 2));
+        finish_volume(*flat);
+        return flat;
+    };
+    const auto constant = [] {
+        auto same = std::make_shared<Volume>();
+        same->geometry.dims = {4, 4, 4};
+        same->values.assign(64, 3);
+        finish_volume(*same);
+        return same;
+    };
+    std::vector<std::pair<const char*, AddedVolume>> beside;
+    const auto add = [&](const char* name, std::shared_ptr<const Volume> volume, double iso) {
+        beside.emplace_back(name, added(std::move(volume), {iso}, {solid({0.4, 0.6, 1})}));
+    };
+    add("far away", far(1e6), 0);
+    add("behind the eye", far(-300), 0);
+    add("samples without data", with_holes(), 0);
+    add("a slice", slice(), 0.5);
+    add("one value", constant(), 2);
+    add("around everything", ball({0, 0, 0}, 90, 6.0 * kOblique), 0);
+    add("tiny", ball({0, -9, 0}, 0.02, 0.004 * kOblique), 0);
+    add("the same", std::make_shared<const Volume>(two_balls().volume), 0);
+    add("mirrored", ball({0, 0, 0}, 8, glm::dmat3(-1)), 0);
+    for (const auto& [name, volume] : beside)
+        for (const bool inside : {false, true}) {
+            SCOPED_TRACE(name);
+            PassScene s = two_balls();
+            s.scene.added = {volume};
+            s.scene.lights[0].shadows = true;
+            s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 5};
+            if (inside) s.camera.eye = {0.3, 0.2, 0.1};
+            for (const std::uint32_t payload : {shader::PAYLOAD_COLOR, shader::PAYLOAD_DEPTH_DISTANCE})
+                for (const glm::vec4& pixel : drawn(s, payload)) {
+                    ASSERT_TRUE(std::isfinite(glm::dot(pixel, pixel)));
+                    ASSERT_TRUE(pixel.a >= 0 && pixel.a <= 1.00001F) << pixel.a;
+                }
+        }
+}
+
+/// Renderers refuse what they cannot draw together, and say why.
 TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
     Renderer renderer({.validation = true});
     const auto refusal = [&](const auto& change, const AovRequest& outputs = {}) {

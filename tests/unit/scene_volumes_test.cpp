@@ -1,4 +1,4 @@
-// Scenes of several volumes: files, keys, places, and what is drawn of each.
+// Reads, writes and resolves scenes with several volumes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -333,7 +333,7 @@ TEST(ViewerScreen, MapsPixelsToRays) {
     EXPECT_NEAR(pixel_size(camera, size, 10), 0.1, 1e-12);
 }
 
-/// Of several volumes the nearest surface is picked, with the values of that volume.
+/// A ray through several volumes picks the nearest surface, with the values of its volume.
 TEST(ViewerPick, FindsTheNearestOfSeveralVolumes) {
     const Volume far = builtin_volume("builtin:sphere:32");
     auto near = std::make_shared<Volume>(builtin_volume("builtin:sphere:20"));
@@ -342,7 +342,8 @@ TEST(ViewerPick, FindsTheNearestOfSeveralVolumes) {
     Scene scene;
     scene.iso_values = {0.5};
     scene.materials = {{}, {.extinction = 8}};
-    scene.added = {{.volume = near, .iso_values = {0.4}, .materials = scene.materials, .transfer = {}, .label_colors = {}}};
+    scene.added = {
+        {.volume = near, .iso_values = {0.4}, .materials = scene.materials, .transfer = {}, .label_colors = {}}};
     const Ray ray{far.geometry.center() - glm::dvec3(0, 1000, 0), {0, 1, 0}};
     const auto first = pick(far, scene, ray);
     ASSERT_TRUE(first);
