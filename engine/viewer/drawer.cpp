@@ -36,12 +36,13 @@ glm::ivec2 scaled(const glm::ivec2& size, double scale) {
 
 /// Cheaper settings for a picture that is shown for a moment. At level 0 the edge estimator stays: its splats are those
 /// of the best picture and are estimated only once.
-Settings hasty(Settings settings, int level) {
+Settings hasty(Settings settings, int level, bool several_volumes) {
     settings.sheets = SheetCut::Whole;
     settings.sheet_spacing = Settings{}.sheet_spacing;
     settings.sheet_format = SheetFormat::Tiles;
     settings.detail = 0;
-    if (level == 0 || settings.edges == EdgeEstimator::Off) return settings;
+    // Surfaces of several volumes need the spline's edges.
+    if (level == 0 || settings.edges == EdgeEstimator::Off || several_volumes) return settings;
     settings.edges = EdgeEstimator::Taylor;
     return settings;
 }
@@ -223,6 +224,10 @@ void Drawer::plan(Job& job) {
         ray_pace_.reset();
         volume_ = job.request.volume;
     }
+    std::erase_if(levels_, [&](const auto& entry) {
+        const auto is_drawn = [&](const AddedVolume& added) { return added.volume == entry.first.first; };
+        return entry.first.first != volume_ && std::ranges::none_of(job.request.scene.added, is_drawn);
+    });
     if (!pace_) {
         pace_.emplace(options_.target, coarsest_level(*volume_, is_processor()));
         ray_pace_.emplace(options_.target, 0, true);
@@ -265,7 +270,7 @@ void Drawer::forget_unused(const Job& job) {
 
 std::shared_ptr<const Volume> Drawer::level_of(const std::shared_ptr<const Volume>& volume, int level) {
     if (level == 0) return volume;
-    auto& found = levels_[level];
+    auto& found = levels_[{volume, level}];
     if (!found) {
         found = volume->values.empty() ? std::make_shared<const Volume>(load_level(*volume, level))
                                        : std::make_shared<const Volume>(halved(*level_of(volume, level - 1)));
@@ -297,11 +302,13 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     renderer.set_progress([this](double share) { found_ = share; });
     Scene scene = request.scene;
     scene.effects.overlays = {};
+    for (AddedVolume& added : scene.added)
+        added.volume = level_of(added.volume, std::min(rung.level, coarsest_level(*added.volume, is_processor())));
     Settings settings = kind == Kind::Best ? *request.best : request.settings;
     const bool hurry = rung.scale < 1 || rung.level > 0 || request.moving;
     if (hurry) {
         scene.effects.samples = 1;
-        settings = hasty(settings, rung.level);
+        settings = hasty(settings, rung.level, !scene.added.empty());
     }
     if (kind == Kind::Plain) settings = without_edges(settings);
     const glm::ivec2 size = scaled(request.size, rung.scale);

@@ -143,7 +143,7 @@ class Drawer {
     std::unique_ptr<Renderer> spare_;  ///< opened to query the device
     std::optional<bool> on_processor_;
     std::shared_ptr<const Volume> volume_;
-    std::map<int, std::shared_ptr<const Volume>> levels_;
+    std::map<std::pair<std::shared_ptr<const Volume>, int>, std::shared_ptr<const Volume>> levels_;
     std::optional<Pace> pace_, ray_pace_;
     std::optional<DrawnPicture> coarse_;    ///< the last coarse picture
     std::map<double, double> still_times_;  ///< milliseconds of splatted pictures at level 0, by scale

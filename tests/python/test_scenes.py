@@ -215,15 +215,15 @@ def test_several_volumes(tmp_path, ball):
     scene["volumes[0].volume.visible"] = False
     scene["volumes[1].volume.visible"] = False
     one = edgesplat.render(ball, scene, view="front")
-    assert np.array_equal(one.array, edgesplat.render(ball, size=(40, 30), view="front").array)
-    assert not np.array_equal(one.array, both.array)
+    assert np.array_equal(one.color, edgesplat.render(ball, size=(40, 30), view="front").color)
+    assert not np.array_equal(one.color, both.color)
     scene["volumes[0].volume.visible"] = True
     again = edgesplat.render(ball, scene, camera=edgesplat.Camera(eye=(4, -60, 5), target=(9, 0, 5)))
-    red = again.array[..., 0] > 2 * again.array[..., 2]
+    red = again.color[..., 0] > 2 * again.color[..., 2]
     assert red[:, 20:].sum() > 20 > red[:, :12].sum()
     with pytest.raises(Error, match=r"volumes: a int: expected a path or a dict"):
         Scene(volumes=[3])
     with pytest.raises(Error, match=r"volumes\[0\].camera"):
         Scene(volumes=[{"camera.view": "top"}])
-    with pytest.raises(Error, match=r"volumes\[0\].volume.path"):
+    with pytest.raises(Error, match=r"volumes\[0\]: nowhere.nrrd: no such file"):
         edgesplat.render(ball, volumes=["nowhere.nrrd"])
