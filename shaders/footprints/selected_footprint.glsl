@@ -12,9 +12,10 @@ struct SelectedFootprint {
 const uint INTEGRATED = 1u << 30, PLAIN_LAYER = 1u << 31;  // bits of the first word; `layer.code` contains INTEGRATED, too
 
 // Packs 8 bytes per splat: layers, and the axis in the format of normals. `to_voxel`: vector from the eye; the
-// footprint is computed for rays along it. `in_table`: the table contains every face that cuts the kernel.
-uvec2 select_footprint(Edge e, bool in_table, vec3 to_voxel, float depth) {
-    bool cut = e.state >= EDGE_LOWER && abs(e.d) < KERNEL_R + depth;
+// footprint is computed for rays along it. `in_table`: the table contains every face that cuts the kernel. `deepest`: of
+// the splat's own material; `depth`: that of the table.
+uvec2 select_footprint(Edge e, bool in_table, vec3 to_voxel, float depth, float deepest) {
+    bool cut = e.state >= EDGE_LOWER && abs(e.d) < KERNEL_R + deepest;
     vec3 u = to_voxel * inversesqrt(max(dot(to_voxel, to_voxel), 1e-12));
     float cosine = dot(e.n, u);
     vec3 across = e.n - cosine * u;

@@ -79,9 +79,11 @@ void main() {
         drawn = drawn && !looks_away(i, e, splat.edge >> 28, p);
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p) + (SURFACES == 1u ? SURFACE_EARLY : 0.0));
-    if (FOOTPRINTS == TABLE && drawn)
-        PairsRef(params.frame.footprints).at[i] =
-            select_footprint(e, is_in_table(i, e, splat.edge >> 28), p.position - params.frame.eye, params.frame.table_depth);
+    if (FOOTPRINTS == TABLE && drawn) {
+        uint material = splat.edge >> 28;
+        PairsRef(params.frame.footprints).at[i] = select_footprint(e, is_in_table(i, e, material), p.position - params.frame.eye,
+                                                                   params.frame.table_depth, traits_of(i, e, material).deepest);
+    }
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
         // Depths relative to the first sheet, so that a far eye costs no precision.
