@@ -157,9 +157,9 @@ class Reader {
             reader.read_table(*(*array)[i].as_table(), "", "", 0);
             reader.apply();
             for (const auto& [path, at] : reader.lines_)
-                lines_[entry + "." + path] = at;
+                lines_[fmt::format("{}.{}", entry, path)] = at;
             for (const Problem& problem : reader.problems_)
-                add_problem(problem.line, "", entry + "." + problem.text);
+                add_problem(problem.line, "", fmt::format("{}.{}", entry, problem.text));
         }
     }
 
