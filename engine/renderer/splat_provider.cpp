@@ -184,18 +184,21 @@ double SplatProvider::provide_undivided(const FrameRequest& request) {
     bool found = false;
     std::vector<LitVolume> lit;
     const auto report = cost_.progress;
-    for (std::size_t number = 0; number <= added_.size(); ++number) {
+    std::vector<LevelStore*> stores{&shown_};
+    for (Added& beside : added_)
+        stores.push_back(&beside.shown);
+    for (std::size_t number = 0; number < stores.size(); ++number) {
         const FrameRequest one = request_of_volume(request, number);
-        LevelStore& store = number == 0 ? shown_ : added_[number - 1].shown;
+        LevelStore& store = *stores[number];
         // A volume without matter beside others has no part.
-        if (!added_.empty() && !has_matter(one.scene)) {
+        if (stores.size() > 1 && !has_matter(one.scene)) {
             store.drop_splats();
             continue;
         }
         std::vector<CollectionPlan> plans;
         std::ranges::transform(parts_of_volume(one), std::back_inserter(plans), planned_collection);
         const CollectionPlan* opaque = plans.size() > 1 ? &plans.front() : nullptr;
-        const auto all = static_cast<double>(added_.size() + 1);
+        const auto all = static_cast<double>(stores.size());
         if (report) cost_.progress = [&, number](double share) { report((static_cast<double>(number) + share) / all); };
         found = store.provide(plans.back(), opaque, cost_) || found;
         lit.push_back({&store, one.scene});
