@@ -184,6 +184,8 @@ DirectResult mean_of_samples(View view, int n, const DirectOptions& options,
 
 DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
                                Output output, const DirectOptions& options) {
+    if (!prepared.is_alone())
+        fail("volumes: direct evaluation is of one volume, but the scene has several; expected renderer splat");
     check_picture_size(width, height);
     check_options(options);
     if (output != Output::Color && output != Output::Tau) fail("direct evaluation renders only colour or tau");

@@ -31,8 +31,9 @@ DirectResult mean_of_samples(View view, int n, const DirectOptions& options,
 void check_options(const DirectOptions& options);
 
 /// Integrates the sum of all kernels, sum_i sigma_i h_i(x), along the ray of every pixel, in front of the eye only.
-/// Output: Color (4 channels) or Tau (1). Throws Error for other outputs, pictures without pixels and invalid options.
-/// Colour is the mean over the scene's number of rays a pixel. No voxel is buried or culled, whatever the camera.
+/// Output: Color (4 channels) or Tau (1). Throws Error for other outputs, pictures without pixels, scenes of several
+/// volumes and invalid options. Colour is the mean over the scene's number of rays a pixel. No voxel is buried or
+/// culled, whatever the camera.
 DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
                                Output output = Output::Color, const DirectOptions& options = {});
 

@@ -25,6 +25,8 @@ class PreparedVolume {
     const Volume& volume() const { return *volume_; }
     const Scene& scene() const { return scene_; }
     const Settings& settings() const { return settings_; }
+    /// Whether the scene has no other volume.
+    bool is_alone() const { return added_.empty(); }
     const ScaledScene& scaled_scene() const { return scaled_; }
     const Footprints& footprints() const { return footprints_; }
     Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }

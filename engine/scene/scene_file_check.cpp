@@ -234,8 +234,12 @@ class Checker {
         if (!o.aovs.empty() && o.compare_raycast) add("output.compare_raycast", "true: expected no aovs beside it");
         if (o.compare_raycast && o.renderer != RendererKind::Splat)
             add("output.compare_raycast", "true: expected renderer \"splat\"");
-        if (o.renderer == RendererKind::Truth && !d_.volumes.empty())
-            add("output.renderer", "\"truth\" draws one volume; expected \"splat\" or \"reference\"");
+        if (o.renderer != RendererKind::Splat && !d_.volumes.empty())
+            add("output.renderer", "\"{}\" draws one volume, but the scene has several; expected \"splat\"", renderer);
+        if (o.compare_raycast && !d_.volumes.empty())
+            add("output.compare_raycast", "true: rays show one volume, but the scene has several volumes");
+        if (d_.quality.max_error && !d_.volumes.empty())
+            add("quality.max_error", "its model is of one volume, but the scene has several");
         if (o.renderer == RendererKind::Truth && !is_builtin(d_.volume.path) && !d_.volume.path.empty())
             add("output.renderer", "\"truth\" needs the exact scene, which only builtin:NAME volumes have");
         if (o.renderer != RendererKind::Splat && d_.quality.max_error)

@@ -81,6 +81,11 @@ std::vector<PassScene> scenes() {
     add("shell around a core", [](PassScene& s) {
         s.scene.added = {added(ball({1, -1, 0.5}, 11, kOblique), {0}, {{{0.3, 0.5, 1}, 0.1}})};
     });
+    add("transfer function", [](PassScene& s) {
+        s.scene.iso_values = {1};
+        s.scene.materials = {{}, {}};
+        s.scene.transfer = {{-2, {0.2, 0.4, 1}, 0}, {3, {0.4, 1, 0.5}, 0.1}, {8, {1, 0.3, 0.2}, 0.25}};
+    });
     add("mixture and ball", [](PassScene& s) {
         s.scene.iso_values = {0, 4};
         s.scene.materials = {{}, {{0.3, 0.5, 1}, 0.12}, solid({1, 0.8, 0.5})};
@@ -219,6 +224,7 @@ Scene exchanged(const PassScene& s, Volume& first) {
                       .label_colors = s.scene.label_colors};
     scene.iso_values = was.iso_values;
     scene.materials = was.materials;
+    scene.transfer = was.transfer;
     first = *was.volume;
     return scene;
 }

@@ -385,13 +385,16 @@ TEST_F(CliScene, DrawsSeveralVolumes) {
     EXPECT_THAT(good("render s.toml --explain"), HasSubstr("6_merge_surfaces"));
     EXPECT_THAT(run("render s.toml -o f.png --compare raycast").err, HasSubstr("several volumes"));
     EXPECT_THAT(run("render builtin:box:20 builtin:nothing -o f.png").err, HasSubstr("volumes[0].volume.path"));
-    EXPECT_FALSE(fs::exists(folder_ / "f.png"));
-    good("render s.toml -o g.png --renderer reference --tolerance 0.01");
+    for (const char* renderer : {"raycast", "reference", "truth"})
+        EXPECT_THAT(run(std::string("render s.toml -o f.png --renderer ") + renderer).err,
+                    AllOf(HasSubstr(renderer), HasSubstr("draws one volume")));
+    EXPECT_THAT(run("render s.toml -o f.png --max-error 0.05").err, HasSubstr("its model is of one volume"));
     write("turn.toml",
           text_of(folder_ / "s.toml") +
               "\n[[movie.animate]]\nkey = \"volumes[0].iso_values[0]\"\ntimes = [0, 1]\nvalues = [0.4, 0.6]\n");
     good("movie turn.toml -o frames/f_%d.png --seconds 0.1");
     EXPECT_NE(picture("frames/f_0.png").pixels, picture("frames/f_2.png").pixels);
+    EXPECT_FALSE(fs::exists(folder_ / "f.png"));
 }
 
 TEST_F(CliScene, RerunsEveryRenderer) {
