@@ -14,7 +14,6 @@
 
 namespace {
 
-using edgesplat::MaterialChoice;
 using edgesplat::SceneDocument;
 
 /// The document's entry of an added volume, with its surfaces and materials written out, so that one can be changed.

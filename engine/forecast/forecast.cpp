@@ -227,7 +227,7 @@ std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
     }
     for (const FrameRequest& part : kernels) {
         const std::string& name = part.volume->name;
-        if (kernels.size() > 1 && part.volume != kernels.front().volume)
+        if (part.number != kernels.front().number)
             fail("volumes: {} and {} have translucent matter, expected at most one such volume of several",
                  kernels.front().volume->name, name);
         if (has_opaque_matter(part))

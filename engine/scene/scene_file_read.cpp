@@ -116,6 +116,20 @@ class Reader {
         return text.size() > 80 ? text.substr(0, 77) + "..." : text;
     }
 
+    /// The node as a list of at most `most` tables with the header [[path]]; null, with a problem, if it is none.
+    const toml::array* tables_in(const toml::node& node, const std::string& path, std::size_t most,
+                                 const std::string& concrete, std::size_t line) {
+        const toml::array* array = node.as_array();
+        const bool tables = array && std::all_of(array->begin(), array->end(), [](auto& n) { return n.is_table(); });
+        if (!tables)
+            add_problem(line, concrete, text_of(node) + ": expected a list of tables, each begun by [[" + path + "]]");
+        else if (array->size() > most)
+            add_problem(line, concrete, fmt::format("{} entries: expected at most {}", array->size(), most));
+        else
+            return array;
+        return nullptr;
+    }
+
     void read_group(const SceneTable& group, const toml::node& node, const std::string& concrete, std::size_t line) {
         if (!group.list) {
             const toml::table* table = node.as_table();
@@ -123,14 +137,8 @@ class Reader {
             group.resize(document_, 1);
             return read_table(*table, concrete, group.path, 0);
         }
-        const toml::array* array = node.as_array();
-        const bool tables = array && std::all_of(array->begin(), array->end(), [](auto& n) { return n.is_table(); });
-        if (!tables)
-            return add_problem(line, concrete,
-                               text_of(node) + ": expected a list of tables, each begun by [[" + group.path + "]]");
-        if (array->size() > group.most)
-            return add_problem(line, concrete,
-                               fmt::format("{} entries: expected at most {}", array->size(), group.most));
+        const toml::array* array = tables_in(node, group.path, group.most, concrete, line);
+        if (!array) return;
         group.resize(document_, 0);
         group.resize(document_, array->size());
         for (std::size_t i = 0; i < array->size(); ++i) {
@@ -141,14 +149,8 @@ class Reader {
     }
 
     void read_added(const toml::node& node, const std::string& concrete, std::size_t line) {
-        const toml::array* array = node.as_array();
-        const bool tables = array && std::all_of(array->begin(), array->end(), [](auto& n) { return n.is_table(); });
-        if (!tables)
-            return add_problem(line, concrete,
-                               text_of(node) + ": expected a list of tables, each begun by [[volumes]]");
-        if (array->size() >= kMaxVolumes)
-            return add_problem(line, concrete,
-                               fmt::format("{} entries: expected at most {}", array->size(), kMaxVolumes - 1));
+        const toml::array* array = tables_in(node, "volumes", kMaxVolumes - 1, concrete, line);
+        if (!array) return;
         document_.volumes.assign(array->size(), {});
         for (std::size_t i = 0; i < array->size(); ++i) {
             const std::string entry = fmt::format("{}[{}]", concrete, i);

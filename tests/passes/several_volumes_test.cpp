@@ -451,6 +451,12 @@ TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
     EXPECT_THAT(
         refusal([](PassScene& s) { s.scene.materials[1].extinction = s.scene.added[0].materials[1].extinction = 0.1; }),
         HasSubstr("expected at most one such volume"));
+    EXPECT_THAT(refusal([](PassScene& s) {
+                    s.scene.added.push_back(s.scene.added[0]);  // one volume twice
+                    for (AddedVolume& beside : s.scene.added)
+                        beside.materials[1].extinction = 0.1;
+                }),
+                HasSubstr("expected at most one such volume"));
     EXPECT_THAT(refusal([](PassScene& s) { s.settings.opaque = OpaqueMatter::Kernels; }),
                 HasSubstr("opaque = surfaces"));
     EXPECT_THAT(refusal([](PassScene&) {}, {.tau = true}), HasSubstr("tau"));

@@ -18,6 +18,7 @@
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
 #include "tests/unit/refusal.h"
+#include "tests/unit/scene_texts.h"
 
 namespace edgesplat {
 namespace {
@@ -27,19 +28,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-SceneDocument parse(const std::string& text) {
-    return parse_scene(text, "a.toml", {});
-}
-
-std::vector<std::string> problems(const std::string& text) {
-    try {
-        parse(text);
-    } catch (const SceneFileError& error) {
-        return error.problems();
-    }
-    return {};
-}
 
 /// A random value of the key's type and range.
 KeyValue random_value(const SceneKey& key, std::mt19937& random) {

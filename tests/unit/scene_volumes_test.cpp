@@ -9,6 +9,7 @@
 #include "engine/scene/views.h"
 #include "engine/volume/analytic_volumes.h"
 #include "tests/unit/refusal.h"
+#include "tests/unit/scene_texts.h"
 
 namespace edgesplat {
 namespace {
@@ -34,19 +35,6 @@ color = [1, 0, 0]
 volume.path = "builtin:orbital:16"
 volume.visible = false
 )";
-
-SceneDocument parse(const std::string& text) {
-    return parse_scene(text, "a.toml", {});
-}
-
-std::vector<std::string> problems(const std::string& text) {
-    try {
-        parse(text);
-    } catch (const SceneFileError& error) {
-        return error.problems();
-    }
-    return {};
-}
 
 /// The document with its volumes read, and the first of them.
 SceneDocument read(std::string_view text, Volume& first) {
