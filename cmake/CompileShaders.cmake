@@ -2,7 +2,8 @@
 # it in `target`. C++ finds a shader by its file name: gpu::find_shader("3_select_footprints.comp").
 function(edgesplat_add_shaders target folder)
     file(GLOB sources CONFIGURE_DEPENDS ${folder}/*/*.comp ${folder}/*/*.vert ${folder}/*/*.frag)
-    file(GLOB includes CONFIGURE_DEPENDS ${folder}/*/*.h ${folder}/*/*.glsl ${CMAKE_SOURCE_DIR}/engine/geometry/*.glsl)
+    file(GLOB includes CONFIGURE_DEPENDS ${folder}/*/*.h ${folder}/*/*.glsl 
+        ${CMAKE_SOURCE_DIR}/footprints/*.glsl ${CMAKE_SOURCE_DIR}/engine/geometry/*.glsl)
     set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
     file(MAKE_DIRECTORY ${out})
     foreach(source ${sources})

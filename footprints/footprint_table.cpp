@@ -65,9 +65,8 @@ double place_of(const Stretches& s, int texel) {
 
 /// The whole footprint along a ray, by the reference's integral of faces.
 double plane_footprint(const Ray& ray, double distance, double depth) {
-    const FaceCut cut =
-        face_cut(distance, 0, 0, std::numeric_limits<double>::infinity(), depth, kernel_of_table(depth));
-    const FacePath path(plane_face(ray, distance), cut);
+    const FaceCut cut = face_cut(distance, 0, 0, FACE_NOWHERE, depth, kernel_of_table(depth));
+    const FacePath path(plane_face(ray, distance), cut, kNoCrease, kernel_of_table(depth));
     const double turns = (distance - depth - ray.pn) / ray.un;
     return path.footprint(kNodes, {.high = turns}).integral + path.footprint(kNodes, {.low = turns}).integral;
 }
@@ -80,7 +79,7 @@ std::uint32_t coded(double place, int layers, std::uint32_t& index) {
 }  // namespace
 
 const Kernel& kernel_of_table(double depth) {
-    return depth == kFaceDepth ? kNarrowKernel : kKernel;
+    return depth == FACE_DEPTH ? kNarrowKernel : kKernel;
 }
 
 FootprintLayer decode_footprint_layer(std::uint32_t code, double depth) {

@@ -24,7 +24,7 @@ struct FootprintLayer {
     double rim2 = 0;         ///< R^2 - e^2: squared radius of the disc in which the face cuts the kernel
 };
 
-/// The kernel of tables of that depth: the narrow one if it is `kFaceDepth`.
+/// The kernel of tables of that depth: the narrow one if it is `FACE_DEPTH`.
 const Kernel& kernel_of_table(double depth);
 
 /// The layers of a face at `distance` along n, for a ray with |n . u| = `cosine`; from R + depth on, the plain layer.

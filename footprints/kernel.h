@@ -43,12 +43,16 @@ constexpr KernelCoefficients footprint_coefficients(const Kernel& k) {
     return c;
 }
 
-/// K at a squared distance r2 >= 0 from its centre; 0 from R on.
-inline double kernel(double r2, const Kernel& k = kKernel) {
+/// K where 1 - r^2 / R^2 = v; 0 where that is negative.
+inline double kernel_inside(double v, const Kernel& k) {
     const KernelCoefficients& c = k.coefficients;
-    const double v = 1 - r2 / (k.radius * k.radius);
     const double w = v > 0 ? v : 0;
     return w * w * (c[0] + w * (c[1] + w * (c[2] + w * (c[3] + w * (c[4] + w * c[5])))));
+}
+
+/// K at a squared distance r2 >= 0 from its centre; 0 from R on.
+inline double kernel(double r2, const Kernel& k = kKernel) {
+    return kernel_inside(1 - r2 / (k.radius * k.radius), k);
 }
 
 /// g: integral of K along a line that passes its centre at squared distance rho2 >= 0.

@@ -12,7 +12,7 @@ inline FaceRay plane_face(const Ray& ray, double distance) {
 
 /// How that face cuts the kernel.
 inline FaceCut plane_cut(double distance) {
-    return face_cut(distance, 0, 0, std::numeric_limits<double>::infinity());
+    return face_cut(distance, 0, 0, FACE_NOWHERE);
 }
 
 }  // namespace edgesplat

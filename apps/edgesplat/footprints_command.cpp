@@ -66,10 +66,10 @@ void report(const Options& options) {
     };
     const Footprint table = [](const Ray& ray, double d) {
         const double sine = std::sqrt(std::max(1 - ray.un * ray.un, 0.0)), x = sine > 0 ? ray.pn / sine : 0;
-        return kept_footprint_table(kFaceDepth)
-            .lookup(select_footprint_layer(d, ray.un, kFaceDepth), x, std::sqrt(std::max(ray.rho2 - x * x, 0.0)));
+        return kept_footprint_table(FACE_DEPTH)
+            .lookup(select_footprint_layer(d, ray.un, FACE_DEPTH), x, std::sqrt(std::max(ray.rho2 - x * x, 0.0)));
     };
-    print_accuracy("cut at plane faces", kKernelRadius + kFaceDepth, options.samples, face(32),
+    print_accuracy("cut at plane faces", kKernelRadius + FACE_DEPTH, options.samples, face(32),
                    {plain, {"table", table}, {"procedural", face(6)}});
     print_accuracy("warped by the paper's curve", kKernelRadius, options.samples,
                    [](const Ray& ray, double d) {

@@ -62,7 +62,7 @@ std::string map_text(const CurveExample& e, const std::filesystem::path& file) {
         picture("map(x) of the paper, of its smooth variant and of a face", file), 0.6, 1 / paper_profile_slope(0.5, q),
         width([&](double w) { return paper_profile(w, q); }),
         (paper_map(at + h, smooth) - paper_map(at - h, smooth)) / (2 * h),
-        width([&](double w) { return paper_profile(w, smooth); }), kFaceDepth);
+        width([&](double w) { return paper_profile(w, smooth); }), FACE_DEPTH);
 }
 
 /// Largest |sum of the kernels - 1| on the line; `sum` gives it for uniform data at x.

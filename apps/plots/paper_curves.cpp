@@ -44,7 +44,7 @@ Plot map_plot(const CurveExample& e) {
               "set key left top\nset grid"};
     plot.curves = {{"paper (corrected)", [=](double x) { return paper_map(x, q); }},
                    {"paper-smooth", [=](double x) { return paper_map(x, smooth); }, "lw 2 dt 2"},
-                   {"face, from its left", [=](double x) { return std::min(x, e.edge() - kFaceDepth); }},
+                   {"face, from its left", [=](double x) { return std::min(x, e.edge() - FACE_DEPTH); }},
                    no_warp()};
     return plot;
 }
@@ -109,7 +109,7 @@ double reconstruction(const CurveExample& example, double x) {
 
 double cut_reconstruction(const CurveExample& example, double x) {
     const bool left = x < example.edge();
-    const double at = left ? std::min(x, example.edge() - kFaceDepth) : std::max(x, example.edge() + kFaceDepth);
+    const double at = left ? std::min(x, example.edge() - FACE_DEPTH) : std::max(x, example.edge() + FACE_DEPTH);
     double sum = 0;
     for (int i = left ? -5 : 1; i <= (left ? 0 : 6); ++i)
         sum += weighted_kernel(example, i, at);

@@ -24,7 +24,7 @@ double weighted_kernel(const CurveExample& example, int i, double x);
 double reconstruction(const CurveExample& example, double x);
 
 /// The reconstruction at x with kernels cut by a face at the edge. Only kernels on x's side contribute; they are
-/// sampled at least kFaceDepth away from the edge.
+/// sampled at least FACE_DEPTH away from the edge.
 double cut_reconstruction(const CurveExample& example, double x);
 
 /// Figures 4, 6, 7 and 8, in that order.

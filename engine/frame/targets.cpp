@@ -82,7 +82,7 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const
         if (!needs(plan) && std::ranges::none_of(beside, needs)) resources_.*row.buffer = {};
     }
     provide_images(plan);
-    if (resources_.footprint_table) fill_table(p.table_depth > 0 ? kFaceDepth : 0);
+    if (resources_.footprint_table) fill_table(p.table_depth > 0 ? FACE_DEPTH : 0);
     p.tile_blocks = tile_blocks(p.tiles, profile);
     p.chunk_pairs = static_cast<std::uint32_t>(chunk_pairs(p.tiles, profile));
     p.prepared_mask = passes::prepared_slots(std::uint64_t{p.splat_count} * plan.sheets_per_splat) - 1;

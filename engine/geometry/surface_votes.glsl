@@ -1,6 +1,6 @@
 // Surface splats on a ray: each says where the ray enters opaque matter, or that it passes by, and the weighted
 // majority decides. docs/method.md, Surface splats; design (14) to (16). Written in the subset of GLSL that is C++:
-// shaders include it in float, engine/geometry/in_double.h in double. The includer declares `Bending` and bent().
+// shaders include it in float, engine/geometry/in_double.h in double. Include after bending.glsl.
 #ifndef EDGESPLAT_SURFACE_VOTES_GLSL
 #define EDGESPLAT_SURFACE_VOTES_GLSL
 
@@ -54,25 +54,19 @@ SurfaceVote vote_of(SurfaceSplat splat, vec3 p, vec3 u) {
     return vote;
 }
 
-// A plane that bounds the matter at a crease: n.x = away, n out of the matter.
-struct SurfacePlane {
-    vec3 n;
-    Real away;  // CREASE_NONE's distance or more: no plane
-};
-
 // The vote of a splat whose matter lies behind two or three planes.
-SurfaceVote vote_of_planes(SurfacePlane one, SurfacePlane two, SurfacePlane three, Real reach, vec3 p, vec3 u) {
+SurfaceVote vote_of_planes(Plane one, Plane two, Plane three, Real reach, vec3 p, vec3 u) {
     Real first = -1e9;
     Real last = 1e9;
     SurfaceVote vote;
     vote.n = one.n;
     for (int i = 0; i < 3; ++i) {
-        SurfacePlane plane = one;
+        Plane plane = one;
         if (i == 1) plane = two;
         if (i == 2) plane = three;
         Real along = dot(plane.n, u);
         Real way = (plane.away - dot(plane.n, p)) / (abs(along) > 1e-9 ? along : -1e-9);
-        bool there = plane.away < 1e8;
+        bool there = plane.away < 0.1 * NO_PLANE;
         bool begins = there && along <= 0.0 && way > first;
         if (begins) vote.n = plane.n;
         if (begins) first = way;

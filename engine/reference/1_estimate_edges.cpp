@@ -5,10 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/reference/creases.h"
 #include "engine/reference/faces.h"
+#include "engine/reference/field_geometry.h"
 #include "engine/volume/parallel.h"
-#include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -16,33 +15,6 @@ namespace edgesplat::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The edge of a voxel without a surface in reach: only the normal -g / |g|, unless |g| is too small.
-VoxelEdge normal_only(const glm::dvec3& g) {
-    VoxelEdge edge;
-    const double length = glm::length(g);
-    edge.has_normal = length >= kSmallestGradient;
-    if (edge.has_normal) edge.n = -g / length;
-    return edge;
-}
-
-/// `taylor`: first-order distance from the voxel's own value and gradient.
-VoxelEdge one_step(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i) {
-    const glm::dvec3 g = voxel_gradient(field, i);
-    VoxelEdge edge = normal_only(g);
-    if (!edge.has_normal) return edge;
-    const double f = field.at(i);
-    const double slope = glm::length(g);
-    const int m = scene.material(f);
-    const double down = (f - scene.lower(m)) / slope;
-    const double up = (scene.upper(m) - f) / slope;
-    edge.upper = up < down;
-    edge.D = std::min(up, down);
-    edge.has_edge = edge.D <= edge_reach(settings);
-    if (!edge.has_edge) return normal_only(g);
-    if (edge.upper) edge.n = g / slope;
-    return edge;
-}
 
 double snorm16(double v) {
     return std::round(std::clamp(v, -1.0, 1.0) * 32767) / 32767;
@@ -70,15 +42,6 @@ glm::dvec3 through_octahedron(const glm::dvec3& n) {
     return glm::normalize(r);
 }
 
-/// Sentinel for a voxel outside translucent matter, out of reach of its face: this splat is not drawn.
-VoxelEdge carries_nothing() {
-    VoxelEdge edge;
-    edge.n = {0, 0, 1};
-    edge.D = static_cast<double>(shader::CARRIES_NOTHING);
-    edge.has_edge = edge.has_normal = true;
-    return edge;
-}
-
 template <typename Work>
 std::vector<VoxelEdge> per_drawn_voxel(const Field& field, const ScaledScene& scene, const Work& work) {
     std::vector<VoxelEdge> edges(field.values.size());
@@ -98,16 +61,39 @@ std::vector<VoxelEdge> per_drawn_voxel(const Field& field, const ScaledScene& sc
 
 }  // namespace
 
+VoxelEdge::Crease square_to(const glm::dvec3& n, const glm::dvec3& crease, double distance, bool turned) {
+    return {(turned ? -1.0 : 1.0) * glm::normalize(glm::cross(n, crease)), distance};
+}
+
+VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+    geometry::FieldGeometry at(field, scene, {}, 0, cubic);
+    const double f = field.at(i);
+    const int m = scene.material(f);
+    const geometry::Edge found = at.find_surfel(i, f, scene.lower(m), scene.upper(m), at.values_around(i));
+    const glm::dvec3 out_of = at.border_beside(i);
+    const bool border = at.is_cut_by_border(found, out_of);
+    VoxelEdge edge = geometry::voxel_edge(border ? at.border_edge(out_of) : found);
+    edge.border = border;
+    return edge.has_edge ? edge : geometry::voxel_edge(geometry::normal_only(voxel_gradient(field, i)));
+}
+
 std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                       bool quantised) {
+    geometry::FieldGeometry at(field, scene);
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge;
-        if (settings.edges == EdgeEstimator::Taylor)
-            edge = one_step(field, scene, settings, i);
-        else if (settings.edges != EdgeEstimator::Off)
+        const auto plain = [&] { return geometry::voxel_edge(geometry::normal_only(voxel_gradient(field, i))); };
+        if (settings.edges == EdgeEstimator::Taylor) {
+            const double f = field.at(i);
+            const int m = scene.material(f);
+            edge = geometry::voxel_edge(at.extrapolated_edge(f, voxel_gradient(field, i), scene.lower(m),
+                                                             scene.upper(m), edge_reach(settings)));
+            if (!edge.has_edge) edge = plain();
+        } else if (settings.edges != EdgeEstimator::Off) {
             edge = find_surfel(field, scene, i, settings.edges == EdgeEstimator::Cubic);
-        else if (scene.light)
-            edge = normal_only(voxel_gradient(field, i));
+        } else if (scene.light) {
+            edge = plain();
+        }
         return quantised ? quantise(edge) : edge;
     });
 }
@@ -115,22 +101,11 @@ std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& sce
 VoxelEdge finished_face(const Field& field, const ScaledScene& scene, const Settings& settings,
                         const std::vector<VoxelEdge>& edges, const glm::ivec3& i, int m) {
     const bool is_translucent = scene.is_translucent[static_cast<std::size_t>(m)];
-    VoxelEdge face = fit_face(field, scene, edges, i, m);
-    face.deepest = is_translucent ? 0 : kFaceDepth;
-    const bool near = face.has_edge && std::abs(face.D) <= edge_reach(settings);
-    if (near && (!is_translucent || std::abs(face.D) < kKernelRadius)) return face;
-    if (scene.material(field.at(i)) != m) return carries_nothing();
-    VoxelEdge plain = normal_only(field_gradient(field, i));
-    if (!near) return plain;
-    // The face is beyond the kernel's radius and does not cut it, but its normal at the voxel, n - D H n, still lights
-    // it. `steep` blends that with the field's own normal.
-    const glm::dvec3 under = face.n - face.D * (face.bending * face.n);
-    const glm::dvec3 outward = (face.upper ? -1.0 : 1.0) * under / std::max(glm::length(under), 1e-6);
-    const glm::dvec3 lit = glm::mix(outward, plain.n, plain.has_normal ? face.steep : 0);
-    if (!(glm::dot(lit, lit) > 1e-6)) return plain;
-    plain.n = glm::normalize(lit);
-    plain.has_normal = true;
-    return plain;
+    geometry::FieldGeometry at(field, scene, edges);
+    VoxelEdge face = geometry::FieldGeometry::voxel_edge(
+        at.finished_face(i, static_cast<std::uint32_t>(m), is_translucent, edge_reach(settings)));
+    face.deepest = is_translucent ? 0 : FACE_DEPTH;
+    return face;
 }
 
 std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
@@ -143,13 +118,15 @@ std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene
 
 std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& scene) {
     std::vector<CarriedEdge> carried;
+    geometry::FieldGeometry samples(field, scene);
     for (std::size_t at = 0; at < field.values.size(); ++at) {
         const glm::ivec3 i = field.voxel(at);
-        const auto [least, most] = values_around(field, i);
-        const int own = scene.material(field.at(i)), last = scene.material(most);
-        int first = scene.material(least);
+        const glm::dvec2 around = samples.values_around(i);
+        const int own = scene.material(field.at(i)), last = scene.material(around.y);
+        int first = scene.material(around.x);
         // Matter of a missing sample's own material is not there.
-        if (field.has_data(at) && least < 0) first = std::min(first + 1, scene.material(least_data_around(field, i)));
+        if (field.has_data(at) && around.x < 0)
+            first = std::min(first + 1, scene.material(samples.least_data_around(i)));
         for (int m = first; m <= last; ++m)
             if (m != own && scene.is_translucent[static_cast<std::size_t>(m)]) carried.push_back({at, m, {}});
     }

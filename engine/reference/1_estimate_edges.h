@@ -30,11 +30,14 @@ struct VoxelEdge {
     bool has_normal = false;
     bool has_edge = false;
     bool border = false;          ///< this surface point lies on the volume's border
-    double deepest = kFaceDepth;  ///< upper bound of FaceCut::depth, voxels
+    double deepest = FACE_DEPTH;  ///< upper bound of FaceCut::depth, voxels
     double steep = 0;             ///< of a face: weight of the field's own direction at the voxel, 0 to 1
     bool mixed = false;           ///< of a face: the opposite face is the other end of the interval
     bool upper = false;           ///< the edge is the upper end of the voxel's interval
 };
+
+/// The plane at `distance` that is perpendicular to both; `turned`: its normal is against their cross product.
+VoxelEdge::Crease square_to(const glm::dvec3& n, const glm::dvec3& crease, double distance, bool turned);
 
 /// The edge of a splat that a voxel emits for translucent matter beside it. The voxel itself lies outside that matter.
 struct CarriedEdge {
@@ -47,6 +50,10 @@ struct CarriedEdge {
 /// For each voxel, the translucent materials other than its own within the range of the samples around it
 /// (values_around). Edges are not set.
 std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& scene);
+
+/// The surfel of voxel i, as an edge (n, D): the surface point, at most 1.25 voxels away, whose normal passes through
+/// the voxel. Without one only a normal. Newton's method on the trilinear field, or with `cubic` on the spline.
+VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic);
 
 /// One edge per voxel, (dims.z, dims.y, dims.x), double. `taylor` finds a plane; the others find the surface point
 /// whose normal passes through the voxel. `quantised` rounds them by `quantise`, as on the GPU.

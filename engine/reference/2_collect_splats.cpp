@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reference/faces.h"
+#include "engine/reference/field_geometry.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/grid.h"
@@ -67,28 +67,19 @@ double border_weight(const Field& field, const ScaledScene& scene, const Setting
 std::vector<double> classified_values(const Field& field, const ScaledScene& scaled,
                                       const std::vector<VoxelEdge>& edges) {
     std::vector<double> values(field.values.begin(), field.values.end());
-    for (std::size_t at = 0; at < values.size(); ++at) {
-        const VoxelEdge& edge = edges[at];
-        const double way = std::max(1.0, 1 - edge.D);
-        if (!edge.has_edge || !(std::abs(edge.D) < 1)) continue;
-        const double further = sample(field, glm::dvec3(field.voxel(at)) - way * edge.n);
-        if (scaled.material(further) == scaled.material(values[at])) values[at] = further;
-    }
+    geometry::FieldGeometry samples(field, scaled);
+    for (std::size_t at = 0; at < values.size(); ++at)
+        values[at] = samples.classified_value(field.voxel(at), values[at], samples.material_of(values[at]),
+                                              geometry::edge_of(edges[at]));
     return values;
 }
 
 double carried_value(const Field& field, const ScaledScene& scaled, const std::vector<VoxelEdge>& edges,
                      const CarriedEdge& carried) {
-    const VoxelEdge& edge = edges[carried.voxel];
+    geometry::FieldGeometry samples(field, scaled);
     const glm::ivec3 i = field.voxel(carried.voxel);
-    const int own = scaled.material(field.at(i)), m = carried.material, last = static_cast<int>(scaled.iso.size());
-    if (edge.has_edge && edge.upper == (m > own)) {
-        const double further = sample(field, glm::dvec3(i) + (edge.D + 1) * edge.n);
-        if (scaled.material(further) == m) return further;
-    }
-    const auto [least, most] = values_around(field, i);
-    if (m == 0) return least < 0 ? least_data_around(field, i) : least;
-    return m == last ? most : 0.5 * (scaled.lower(m) + scaled.upper(m));
+    return samples.carried_value(i, samples.material_at(i), static_cast<std::uint32_t>(carried.material),
+                                 geometry::edge_of(edges[carried.voxel]));
 }
 
 std::optional<TransferPoint> labelled(const Field& field, const ScaledScene& scaled, const Scene& scene,

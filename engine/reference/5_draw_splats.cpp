@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/face_geometry.h"
 #include "engine/reference/faces.h"
 #include "engine/volume/parallel.h"
 #include "footprints/kernel.h"
@@ -90,18 +91,18 @@ struct SeenSplat {
     const View& view;
     const Settings& settings;
     glm::dvec3 center, p, u;
-    FaceSight sight;  ///< set if `cut`
     bool cut = false;
+    geometry::FaceGeometry face{};              ///< set if `cut`
+    geometry::FaceGeometry::FaceSight sight{};  ///< likewise
 
     /// The payload at one end of the ray's path through the splat's matter. `border`: the volume's outward normal if
     /// the path ends at the border, else 0.
-    glm::dvec3 at(const FaceEnd& end, const glm::dvec3& border, Payload payload) const {
+    glm::dvec3 at(const FaceEnd& end, const glm::dvec3& border, Payload payload) {
         const VoxelEdge& edge = record.edge;
         glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
         bool upper = edge.upper;
         if (cut) {
-            outward = sight.outward(end.z, end.behind);
-            if (end.plane > 0) outward = (end.plane == 1 ? edge.crease : edge.corner).n;
+            outward = face.normal_at(sight, end, true);
             // In a layer between two iso-values both normals point to the lower values.
             const glm::dvec3 a = glm::abs(edge.n);
             const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
@@ -125,7 +126,7 @@ struct SeenSplat {
                       .normal = unlit ? glm::dvec3(0) : normal,
                       .position = view.geometry.to_world(at),
                       .depth = view.depth(at)},
-                     view.frame.eye, record.reach_at(end.behind));
+                     view.frame.eye, record.reach_at(end.side < 0));
     }
 };
 
@@ -146,17 +147,17 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
                         const glm::dvec3& u, const Slice& slice, bool plain) {
     const VoxelEdge& edge = record.edge;
     if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
-    SeenSplat seen{
-        record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, {}, footprints.cuts(edge)};
+    SeenSplat seen{record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, footprints.cuts(edge)};
     if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
-    seen.sight = face_sight(drawn_edge(edge, settings), p, u);
+    seen.face.take(drawn_edge(edge, settings));
+    seen.sight = seen.face.face_sight(p, u);
     const double radius = footprints.kernel().radius;
     const double eye = glm::dot(view.eye_index - seen.center - p, u);
     const VolumePiece inside = piece_in_volume(view.geometry.dims, view.eye_index, u).seen_from(eye);
     if (plain) {
         // A widened kernel is lit where the ray through its voxel's centre enters the face.
-        const FaceSight centre = face_sight(drawn_edge(edge, settings), glm::dvec3(0), u);
-        const double value = centre.ray.phi.c, along = centre.ray.phi.b;
+        const Quadratic phi = seen.face.face_sight(glm::dvec3(0), u).ray.phi;
+        const double value = phi.c, along = phi.b;
         const double begin = std::max(along < 0 ? -value / along : -radius, -radius);
         const bool at_border = value < 0 && inside.low > std::max(begin, eye);
         return seen.at({at_border ? inside.low : 0}, at_border ? inside.normal : glm::dvec3(0), payload);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/face_geometry.h"
 #include "engine/reference/faces.h"
 #include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
@@ -26,7 +27,7 @@ const Kernel& Footprints::kernel() const {
 
 bool Footprints::warped(const VoxelEdge& edge) const {
     if (!edge.has_edge || settings_.footprints == FootprintMode::Isotropic) return false;
-    if (settings_.warp == WarpFamily::Face) return edge.D < kernel().radius + kFaceDepth;
+    if (settings_.warp == WarpFamily::Face) return edge.D < kernel().radius + FACE_DEPTH;
     return edge.D < kKernelRadius;
 }
 
@@ -62,13 +63,14 @@ bool Footprints::cuts(const VoxelEdge& edge) const {
 }
 
 FacePath Footprints::face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
-    const VoxelEdge drawn = drawn_edge(edge, settings_);
-    return {face_sight(drawn, p, u).ray, cut_of(drawn, kernel()), pieces_};
+    geometry::FaceGeometry at(kernel());
+    at.take(drawn_edge(edge, settings_));
+    return {at.face_sight(p, u).ray, at.face_form.cut, at.crease_seen(p, u), kernel(), pieces_};
 }
 
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                   const Slice& slice) const {
-    return face_path(edge, p, u).footprint(table_depth_ != kFaceDepth ? kManyNodes : kFewNodes, slice);
+    return face_path(edge, p, u).footprint(table_depth_ != FACE_DEPTH ? kManyNodes : kFewNodes, slice);
 }
 
 bool Footprints::tabulated(const VoxelEdge& edge) const {
@@ -101,7 +103,10 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
 
 double Footprints::reach(const VoxelEdge& edge) const {
     if (!warped(edge)) return kernel().radius;
-    return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), kernel()).reach : kPaperReach;
+    if (settings_.warp != WarpFamily::Face) return kPaperReach;
+    geometry::FaceGeometry at(kernel());
+    at.take(drawn_edge(edge, settings_));
+    return std::sqrt(at.face_form.cut.reach2);
 }
 
 }  // namespace edgesplat::reference

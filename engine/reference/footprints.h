@@ -16,7 +16,7 @@ namespace edgesplat::reference {
 class Footprints {
   public:
     /// `table_depth`: FaceCut::depth of the faces in the table, voxels.
-    explicit Footprints(const Settings& settings, double table_depth = kFaceDepth,
+    explicit Footprints(const Settings& settings, double table_depth = FACE_DEPTH,
                         FacePieces pieces = FacePieces::Both);
 
     /// The kernel that is warped or cut: the narrow one if faces cut it and all matter is opaque.
@@ -40,7 +40,7 @@ class Footprints {
     /// The parts of the cut kernel along a ray.
     FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
     /// Whether light falls on both ends of the ray's path: in translucent matter, if both pieces count.
-    bool lit_in_depth(const VoxelEdge& edge) const { return edge.deepest != kFaceDepth && pieces_ == FacePieces::Both; }
+    bool lit_in_depth(const VoxelEdge& edge) const { return edge.deepest != FACE_DEPTH && pieces_ == FacePieces::Both; }
     /// Integral of the cut kernel over a piece of the ray, and the ends of the ray's path through its matter.
     FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 

@@ -4,8 +4,38 @@
 #include <array>
 #include <cmath>
 
-#include "engine/reference/faces.h"
+#include "engine/reference/face_geometry.h"
 #include "shaders/shared/limits.h"
+
+namespace edgesplat::reference {
+namespace {
+
+/// Change of a function with this gradient, at a depth (mm), from a pixel to its neighbours to the right and below.
+glm::dvec2 rate_across(const View& view, const glm::dvec3& gradient, double depth) {
+    const double pixel = 2 * view.frame.tan_half_y * depth / view.height;
+    return pixel * glm::dvec2(glm::dot(gradient, view.world_to_index * view.frame.right),
+                              glm::dot(gradient, view.world_to_index * -view.frame.up));
+}
+
+}  // namespace
+}  // namespace edgesplat::reference
+
+namespace edgesplat::geometry {
+namespace {
+
+/// The outlines of a splat in a view.
+struct OutlineGeometry : FaceGeometry {
+    explicit OutlineGeometry(const reference::View& of) : view(of) {}
+
+    const reference::View& view;
+
+    vec2 rate_across(const vec3& gradient, Real depth) const { return reference::rate_across(view, gradient, depth); }
+
+#include "engine/geometry/outline.glsl"
+};
+
+}  // namespace
+}  // namespace edgesplat::geometry
 
 namespace edgesplat::reference {
 namespace {
@@ -14,19 +44,6 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 using glm::ivec2;
-
-constexpr double kStraight = 1e-6;
-
-double not_zero(double v) {
-    return std::abs(v) < kStraight ? std::copysign(kStraight, v) : v;
-}
-
-/// Change of a function with this gradient, at a depth (mm), from a pixel to its neighbours to the right and below.
-dvec2 rate_across(const View& view, const dvec3& gradient, double depth) {
-    const double pixel = 2 * view.frame.tan_half_y * depth / view.height;
-    return pixel * dvec2(glm::dot(gradient, view.world_to_index * view.frame.right),
-                         glm::dot(gradient, view.world_to_index * -view.frame.up));
-}
 
 /// The outline where `level` is 0; matter lies where it is negative. `rate`: change of `level` per pixel. nullopt if
 /// the outline is a pixel or more away.
@@ -37,70 +54,20 @@ std::optional<Outline> outline_of_rate(double level, const dvec2& rate) {
     return Outline{pixels, -level / along, down};
 }
 
-/// A splat along one ray.
-struct OutlinedSplat {
-    const VoxelEdge& edge;
-    const View& view;
-    FaceSight sight;
-    double thickness;                ///< of a wall; else infinite
-    double ahead, tau, depth_along;  ///< depth_along: mm of depth per voxel along the ray
-
-    double depth(double z) const { return (ahead + z) * depth_along; }
-
-    /// Whether the ray's point z lies inside a corner's third plane.
-    bool inside_corner(double z) const { return sight.ray.corner.p + z * sight.ray.corner.u < edge.corner.D; }
-
-    dvec2 rate_across(const dvec3& gradient, double z) const {
-        return reference::rate_across(view, gradient, depth(z));
-    }
-
-    /// outline_of_rate(); nullopt if the splat is too faint or too far from the ray.
-    std::optional<Outline> passing(double level, const dvec2& rate, double z) const {
-        const double distance2 = sight.ray.rho2 + z * z;
-        const bool knows = level < 0 ? tau > static_cast<double>(shader::OUTLINE_TAU) &&
-                                           distance2 < static_cast<double>(shader::OUTLINE_FAR2)
-                                     : distance2 < static_cast<double>(shader::OUTLINE_NEAR2);
-        return knows ? outline_of_rate(level, rate) : std::nullopt;
-    }
-
-    /// The outline of a face: the ray's minimum of phi, or of a wall's other face its maximum.
-    std::optional<Outline> of_face() const {
-        const Quadratic& phi = sight.ray.phi;
-        const bool opens = phi.a >= 0;
-        if (!opens && !std::isfinite(thickness)) return {};
-        const double side = opens ? 1 : -1, z = -0.5 * phi.b / not_zero(phi.a);
-        if (!(depth(z) > 0) || !(sight.ray.crease.p + z * sight.ray.crease.u < edge.crease.D)) return {};
-        if (!inside_corner(z)) return {};
-        return passing(side * (phi.at(z) + (opens ? 0 : thickness)),
-                       side * rate_across(sight.slope + z * sight.turn, z), z);
-    }
-
-    /// The outline at a crease: there the path between face and crease plane has length 0.
-    std::optional<Outline> of_crease() const {
-        const Quadratic& phi = sight.ray.phi;
-        const FaceRoots roots = face_roots(phi, 0);
-        if (!std::isfinite(edge.crease.D) || !roots.real) return {};
-        const bool leaves = sight.ray.crease.u > 0;  // the ray leaves the matter through the crease's plane
-        const double side = leaves ? 1 : -1, u = not_zero(sight.ray.crease.u);
-        const double at_face = (phi.a >= 0) == leaves ? roots.low : roots.high;
-        const double at_crease = (edge.crease.D - sight.ray.crease.p) / u, z = 0.5 * (at_face + at_crease);
-        const double along = phi.b + 2 * at_face * phi.a;
-        if (!(depth(z) > 0) || !(along * u < 0) || !inside_corner(z)) return {};
-        const dvec2 rate =
-            rate_across(edge.crease.n, z) / u - rate_across(sight.slope + at_face * sight.turn, z) / along;
-        return passing(side * (at_face - at_crease), side * rate, z);
-    }
-};
-
 }  // namespace
 
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const dvec3& p, const dvec3& u, double ahead,
                                   double tau) {
+    geometry::OutlineGeometry at(view);
+    at.take(edge);
     const double depth_along = glm::dot(view.frame.forward, view.geometry.index_to_world_axes * u);
-    const OutlinedSplat splat{edge, view,       face_sight(edge, p, u), cut_of(edge, kKernel).thickness, ahead,
-                              tau,  depth_along};
-    std::optional<Outline> outline = splat.of_face();
-    keep_outer(outline, splat.of_crease());
+    const geometry::OutlineGeometry::OutlinedSplat splat{at.face_sight(p, u), at.crease_seen(p, u), ahead, depth_along,
+                                                         tau};
+    const auto found = [](const geometry::OutlineGeometry::PassingOutline& passing) {
+        return passing.there ? outline_of_rate(passing.level, passing.rate) : std::nullopt;
+    };
+    std::optional<Outline> outline = found(at.outline_of_face(splat, true));
+    keep_outer(outline, found(at.outline_of_crease(splat)));
     return outline;
 }
 

@@ -14,7 +14,7 @@ double PixelFilter::rho2(double rho2_of_ray, const glm::dvec2& at) const {
 }
 
 double matter_of_voxel(const VoxelEdge& edge, const Footprints& footprints) {
-    const bool carried = edge.deepest != kFaceDepth;  // translucent: voxels beside the matter emit splats of it, too
+    const bool carried = edge.deepest != FACE_DEPTH;  // translucent: voxels beside the matter emit splats of it, too
     if (!footprints.warped(edge) || (!carried && edge.D + edge.D2 < 1)) return 1;
     const auto behind_face = [&](double distance) {
         return distance < (carried ? 0.5 : 1) ? std::max(distance + 0.5, 0.0) : 1.0;

@@ -1,52 +1,53 @@
 #include "engine/reference/surface_point.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "engine/reference/field_geometry.h"
 
-#include "footprints/kernel.h"
+namespace edgesplat::geometry {
+namespace {
+
+/// engine/geometry/surface_point.glsl with the planes that it asks for.
+struct SurfacePointGeometry {
+    explicit SurfacePointGeometry(const IndexClip& planes = {})
+        : CLIP_KEEP(static_cast<uint>(planes.keep.size())),
+          CLIP_REMOVE(static_cast<uint>(planes.remove.size())),
+          clip(planes) {}
+
+    uint CLIP_KEEP, CLIP_REMOVE;
+    IndexClip clip;
+
+    vec4 keep_plane(uint i) const { return {clip.keep[i].normal, clip.keep[i].offset}; }
+    vec4 remove_plane(uint i) const { return {clip.remove[i].normal, clip.remove[i].offset}; }
+
+#include "engine/geometry/surface_point.glsl"
+};
+
+mat3 normal_to_world(const VolumeGeometry& grid) {
+    return transpose(inverse(grid.index_to_world_axes));
+}
+
+reference::SurfacePoint public_point(const SurfacePointGeometry::SurfacePoint& s) {
+    return {s.foot, s.normal, s.step, s.voxel, s.room};
+}
+
+}  // namespace
+}  // namespace edgesplat::geometry
 
 namespace edgesplat::reference {
 
 bool is_wall(const VoxelEdge& edge, double band) {
-    return edge.has_edge && edge.D2 < band;
+    return geometry::SurfacePointGeometry().is_wall(geometry::edge_of(edge), band);
 }
 
-SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& geometry) {
-    SurfacePoint s;
-    if (!edge.has_normal) return s;
-    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
-    const bool wall = is_wall(edge, band);
-    const double side = edge.upper == (wall && turned) ? 1 : -1;
-    s.normal = glm::normalize(glm::transpose(to_index) * (side * edge.n));
-    s.step = to_index * s.normal;
-    s.voxel = 1 / glm::length(s.step);
-    s.room = edge.upper && !wall ? 0.5 * (edge.D + edge.D2) * s.voxel : std::numeric_limits<double>::infinity();
-    if (edge.has_edge) s.foot = (wall && side < 0 ? -edge.D2 : edge.D) * edge.n;
-    return s;
+SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& grid) {
+    return geometry::public_point(geometry::SurfacePointGeometry().surface_point(geometry::edge_of(edge), band, turned,
+                                                                                 geometry::normal_to_world(grid)));
 }
 
 SurfacePoint at_cut(const SurfacePoint& uncut, const VoxelEdge& edge, const glm::dvec3& x, const IndexClip& clip,
-                    const VolumeGeometry& geometry) {
-    const auto nearest = [&](const std::vector<IndexPlane>& planes) {
-        return std::ranges::max_element(planes, {}, [&](const IndexPlane& plane) { return plane.distance(x); });
-    };
-    const auto keep = nearest(clip.keep), remove = nearest(clip.remove);
-    const double infinite = std::numeric_limits<double>::infinity();
-    const double to_keep = keep == clip.keep.end() ? infinite : std::abs(keep->distance(x));
-    const double to_hole = remove == clip.remove.end() ? infinite : std::abs(remove->distance(x));
-    const double own = edge.has_edge ? std::min(std::abs(edge.D), std::abs(edge.D2)) : infinite;
-    if (std::min(to_keep, to_hole) >= std::min(own, kKernelRadius)) return uncut;
-    const bool hole = to_hole < to_keep;
-    const IndexPlane& plane = hole ? *remove : *keep;
-    SurfacePoint s;
-    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
-    s.foot = -plane.distance(x) * plane.normal;
-    s.normal = glm::normalize(glm::transpose(to_index) * (hole ? -plane.normal : plane.normal));
-    s.step = to_index * s.normal;
-    s.voxel = 1 / glm::length(s.step);
-    s.room = infinite;
-    return s;
+                    const VolumeGeometry& grid) {
+    return geometry::public_point(
+        geometry::SurfacePointGeometry(clip).at_cut({uncut.foot, uncut.normal, uncut.step, uncut.voxel, uncut.room},
+                                                    geometry::edge_of(edge), x, geometry::normal_to_world(grid)));
 }
 
 }  // namespace edgesplat::reference

@@ -1,4 +1,4 @@
-// Finds where light arrives at a splat (docs/method/light.md). Mirrors shaders/light/surface_point.glsl.
+// Finds where light arrives at a splat (docs/method/light.md), by engine/geometry/surface_point.glsl.
 #pragma once
 
 #include "engine/reference/2_collect_splats.h"

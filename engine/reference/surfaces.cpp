@@ -5,8 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "engine/geometry/in_double.h"
-#include "engine/reference/faces.h"
+#include "engine/reference/face_geometry.h"
 #include "engine/reference/outlines.h"
 #include "engine/reference/volume_piece.h"
 #include "engine/volume/labels.h"
@@ -24,48 +23,6 @@ constexpr auto kReach = static_cast<double>(shader::SURFACE_REACH);
 constexpr auto kCreaseReach = static_cast<double>(shader::CREASE_REACH);
 constexpr auto kSide = static_cast<double>(shader::SURFACE_SIDE);
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
-
-bool is_matter(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
-    return i == field.clamped(i) && field.has_data(field.offset(i)) && scene.material(field.at(i)) == m;
-}
-
-/// Whether matter of voxel i ends on one of its six sides. Beyond the outermost samples the field continues linearly,
-/// for half a voxel.
-bool ends_beside(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
-    for (int axis = 0; axis < 3; ++axis)
-        for (const int step : {-1, 1}) {
-            ivec3 j = i;
-            j[axis] += step;
-            const bool outermost = field.clamped(j) != j;
-            if (!outermost && !is_matter(field, scene, j, m)) return true;
-            const double beyond = std::max(1.5 * field.at(i) - 0.5 * field.at(field.clamped(2 * i - j)), 0.0);
-            if (outermost && scene.material(beyond) != m) return true;
-        }
-    return false;
-}
-
-/// The number of axes along which matter ends on both sides of voxel i: 1 in a sheet, 2 in a rod, 3 in a speck. No foot
-/// point lies on its far side.
-int thin_axes(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
-    int axes = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        ivec3 o(0);
-        o[axis] = 1;
-        axes += is_matter(field, scene, i + o, m) || is_matter(field, scene, i - o, m) ? 0 : 1;
-    }
-    return axes;
-}
-
-geometry::SurfaceCheck checked(const Field& field, const ivec3& i, const geometry::SurfaceSplat& face, const dvec3& n,
-                               double iso, bool upper) {
-    geometry::SurfaceCheck check = geometry::no_check();
-    for (int k = 0; k < geometry::SURFACE_CHECKS; ++k) {
-        const dvec3 at = geometry::checked_point(face, n, k), p = dvec3(i) + at;
-        const dvec3 slope = spline_gradient(field, p);
-        geometry::check_point(check, face, at, sample(field, p, true) - iso, upper ? -slope : slope);
-    }
-    return check;
-}
 
 /// A part of a ray in the volume that clip planes keep. Distances from the eye, voxels.
 struct RayPart {
@@ -167,8 +124,8 @@ std::optional<Outline> searched_outline(const Field& field, const ScaledScene& b
     return found;
 }
 
-geometry::SurfacePlane plane_of(const dvec3& n, double away) {
-    return {n, std::isfinite(away) ? away : 1e9};
+geometry::Plane plane_of(const dvec3& n, double away) {
+    return {n, std::isfinite(away) ? away : geometry::NO_PLANE};
 }
 
 /// A surface splat in a picture.
@@ -211,8 +168,10 @@ DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View
     const double pixels = longest_voxel(view.geometry) * view.height / (2 * view.frame.tan_half_y * depth);
     s.traced = edge.traced && edge.D2 * pixels > static_cast<double>(shader::SURFACE_SHOWS);
     s.creased = !s.traced && edge.crease.D < kCreaseReach;
-    const dvec3 foot = edge.D * edge.n, turned = edge.bending * foot;
-    s.face = {-edge.D + 0.5 * glm::dot(foot, turned), edge.n - turned, edge.bending, foot, kReach};
+    const dvec3 foot = edge.D * edge.n;
+    geometry::FaceGeometry at;
+    at.take(edge);
+    s.face = {at.face_form.value, at.face_form.slope, at.face_form.h, foot, kReach};
     const dvec3 center = s.x + (s.traced || s.creased ? dvec3(0) : foot);
     const double crease = s.creased ? static_cast<double>(shader::SURFACE_CREASE) : 0;
     s.reach = s.traced && !(edge.D2 < static_cast<double>(shader::SURFACE_LOST))
@@ -334,81 +293,20 @@ SurfaceScene::SurfaceScene(const Scene& whole, const Volume& volume)
 
 VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                       const ivec3& i, int m, double noise) {
-    VoxelEdge face;
-    face.has_edge = face.has_normal = true;
-    face.n = {0, 0, 1};
-    face.D2 = kNowhere;
-    const auto around = [&](const ivec3& center, const auto& take) {
-        for (int k = 0; k < 125; ++k) {
-            const ivec3 j = center + ivec3(k % 5, k / 5 % 5, k / 25) - 2;
-            const auto s = surfel_of(field, scene, surfels, i, j, m);
-            if (s && !s->border) take(*s);
-        }
-    };
-    Surfel nearest;
-    double distance = static_cast<double>(shader::KERNEL_RADIUS);
-    bool found = false;
-    around(i, [&](const Surfel& s) {
-        if (!(glm::length(s.at) < distance - 1e-4)) return;
-        distance = glm::length(s.at);
-        nearest = s;
-        found = true;
-    });
-    face.traced = true;
-    if (!found) return face;
-    const dvec3 middle = nearest.at;
-    Moments sums;
-    around(i + ivec3(glm::roundEven(middle)), [&](const Surfel& s) {
-        const dvec3 r = s.at - middle;
-        const double w = 1 - glm::dot(r, r) / std::pow(static_cast<double>(shader::SURFACE_FIT), 2);
-        if (w > 0 && glm::dot(s.n, nearest.n) > 0) sums.add(r, s.n, w * w);
-    });
-    const Quadric q = quadric_of(sums);
-    const Foot foot = foot_of(q, -middle, dvec3(0));
-    const double steep = glm::length(foot.slope);
-    const bool real = steep >= 0.3 && std::abs(q.at(foot.at)) < 0.05 &&
-                      glm::length(foot.at) < static_cast<double>(shader::SURFACE_FIT);
-    face.upper = nearest.upper;
-    face.n = real ? foot.slope / steep : nearest.n;
-    face.D = glm::dot(real ? middle + foot.at : middle, face.n);
-    bool kept = false;
-    if (real) {
-        face.bending = q.h / steep;
-        const geometry::SurfaceSplat own{q.at(-middle) / steep, q.slope(-middle) / steep, face.bending,
-                                         middle + foot.at, kReach};
-        const double iso = face.upper ? scene.upper(m) : scene.lower(m);
-        const geometry::SurfaceCheck check = checked(field, i, own, face.n, iso, face.upper);
-        double wrong = 0, low = kNowhere, high = -kNowhere;
-        for (int k = 0; k < 27; ++k) {
-            const ivec3 o = ivec3(k % 3, k / 3 % 3, k / 9) - 1;
-            low = std::min(low, field.at(i + o));
-            high = std::max(high, field.at(i + o));
-            wrong = std::max(wrong, geometry::contradiction(own, dvec3(o), is_matter(field, scene, i + o, m)));
-        }
-        const bool agrees = geometry::is_verified(check, noise, high - low) && face.D > -0.05 &&
-                            wrong <= kSide + geometry::moved_by_noise(check.steep, noise);
-        const int thin = thin_axes(field, scene, i, m);
-        kept = thin == 0 && (scene.two_values || agrees);
-        const double least = thin == 1 ? static_cast<double>(shader::SURFACE_SHEET) : 0;
-        face.D2 = thin < 2 ? std::max({geometry::error_of(check), wrong, least}) : kNowhere;
-    }
-    if (scene.two_values) {
-        const VoxelEdge planes = fit_face(field, scene, surfels, i, m);
-        if (std::isfinite(planes.crease.D)) return planes;
-    }
-    face.traced = !kept;
-    return face;
+    geometry::FieldGeometry at(field, scene, surfels, noise);
+    return geometry::FieldGeometry::voxel_edge(at.fit_surface(i, static_cast<std::uint32_t>(m)));
 }
 
 std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool quantised) {
     const ScaledScene& bodies = surfaces.bodies;
     std::vector<SplatRecord> records;
+    geometry::FieldGeometry samples(field, bodies);
     for (std::size_t at = 0; at < field.values.size(); ++at) {
-        const int m = bodies.material(field.at(field.voxel(at)));
-        if (field.has_data(at) && bodies.drawn[static_cast<std::size_t>(m)] &&
-            ends_beside(field, bodies, field.voxel(at), m))
-            records.push_back({static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), {}});
+        const glm::ivec3 i = field.voxel(at);
+        const std::uint32_t m = samples.material_at(i);
+        if (field.has_data(at) && bodies.drawn[m] && samples.ends_beside(i, field.at(i), m))
+            records.push_back({static_cast<std::uint32_t>(at), m, {}});
     }
     parallel_for(static_cast<int>(records.size()), [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {

@@ -123,12 +123,12 @@ bool draws_table(const Settings& settings) {
 }
 
 double edge_reach(const Settings& settings) {
-    return settings.warp == WarpFamily::Face ? kFaceFarthest : kKernelRadius;
+    return settings.warp == WarpFamily::Face ? FACE_FARTHEST : kKernelRadius;
 }
 
 double kernel_reach(const Settings& settings) {
     if (!draws_warped(settings)) return kKernelRadius;
-    return settings.warp == WarpFamily::Face ? kFaceFarthest : kPaperReach;
+    return settings.warp == WarpFamily::Face ? FACE_FARTHEST : kPaperReach;
 }
 
 Settings paper_settings(Settings base) {

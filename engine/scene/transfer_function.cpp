@@ -80,7 +80,7 @@ const Kernel& uncut_kernel(const Settings& settings, const Scene& scene, const V
 }
 
 double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
-    return is_whole_and_opaque(scene, geometry) ? kFaceDepth : 0;
+    return is_whole_and_opaque(scene, geometry) ? FACE_DEPTH : 0;
 }
 
 bool has_single_piece(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {

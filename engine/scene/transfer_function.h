@@ -38,7 +38,7 @@ bool draws_opaque_faces(const Settings& settings, const Scene& scene, const Volu
 /// The kernel of voxels without a face.
 const Kernel& uncut_kernel(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// Maximum sampling depth below faces in the footprint table, voxels: `kFaceDepth` with narrow kernels, or 0 for no
+/// Maximum sampling depth below faces in the footprint table, voxels: `FACE_DEPTH` with narrow kernels, or 0 for no
 /// limit.
 double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 

@@ -42,21 +42,12 @@ vec4 field_slope(ivec3 origin, vec3 p) {
     if (ESTIMATOR == CUBIC) return bspline_slope(origin, p);
     return vec4(field_gradient(origin, p), trilinear(origin, p));
 }
-#include "shaders/edges/find_surfel.glsl"
 
-// One step along the voxel's own gradient (paper; Levoy 1988).
-Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
-    Edge e = no_edge();
-    vec3 g = voxel_gradient(p);
-    float slope = length(g);
-    if (!(slope >= GRADIENT_MIN)) return e;
-    vec3 n = g / slope;
-    for (int end = 0; end < 2; ++end) {
-        float d = abs((end == 0 ? low : high) - value) / slope;
-        if (d < e.d && d <= band) e = Edge(end == 0 ? -n : n, d, 1e9, end == 0 ? EDGE_LOWER : EDGE_UPPER);
-    }
-    return e;
-}
+ivec3 block_origin() { return params.scene.block_origin; }
+ivec3 volume_dims() { return params.scene.volume_dims; }
+#include "shaders/drivers/if_any.glsl"
+#include "engine/geometry/values_around.glsl"
+#include "engine/geometry/find_edge.glsl"
 
 bool matter_ends;  // whether matter may end in the brick
 
@@ -69,13 +60,6 @@ bool is_outermost(ivec3 p) {
 bool ends_around(float value, vec2 around) {
     uint material = material_of(value);
     return material_of(around.x) != material || material_of(around.y) != material || (has_data(value) && !has_data(around.x));
-}
-
-// The normal of a voxel without an edge.
-Edge plain_edge(ivec3 p) {
-    vec3 g = voxel_gradient(p);
-    float slope = length(g);
-    return slope >= GRADIENT_MIN ? Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL) : no_edge();
 }
 
 void store_edge(ivec3 p, Edge e, uint flags) {
@@ -96,7 +80,7 @@ bool wanted(ivec3 p) {
     }
     IF_ANY(!searched) {
         Edge e = no_edge();
-        IF_ANY(SURFACES == 0u && visible) e = plain_edge(p);
+        IF_ANY(SURFACES == 0u && visible) e = normal_only(voxel_gradient(p));
         store_edge(p, e, 0u);
     }
     return searched;
@@ -126,7 +110,7 @@ void main() {
         float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
         float high = params.scene.iso[material];
         Edge e = no_edge();
-        if (ESTIMATOR == TAYLOR) e = extrapolate(p, value, low, high, params.scene.band);
+        if (ESTIMATOR == TAYLOR) e = extrapolated_edge(value, voxel_gradient(p), low, high, params.scene.band);
         uint flags = 0u;
         if (SURFELS || params.scene.translucent_mask != 0u) {
             vec2 around = values_around(p);
@@ -137,11 +121,11 @@ void main() {
             flags = pack_beside(Beside(material - lowest, material_of(around.y) - material));
             if (SURFELS) e = find_surfel(p, value, low, high, around);
         }
-        IF_ANY(e.state == EDGE_NONE) e = plain_edge(p);
+        IF_ANY(e.state == EDGE_NONE) e = normal_only(voxel_gradient(p));
         if (SURFELS) {
             vec3 out_of = border_beside(p);
-            bool cut = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
-            if (cut) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);
+            bool cut = is_cut_by_border(e, out_of);
+            if (cut) e = border_edge(out_of);
             flags |= cut ? EDGE_BORDER : 0u;
         }
         store_edge(p, e, flags);

@@ -3,15 +3,8 @@
 #ifndef EDGE_RECORD_GLSL
 #define EDGE_RECORD_GLSL
 #include "shaders/shared/scene_params.h"
-
-struct Edge {
-    vec3 n;        // index space, unit; points towards the edge
-    float d;       // distance along n, voxels
-    float d2;      // distance along -n to the second edge; > FACE_DISTANCE_UNIT if none is in reach
-    uint state;    // EdgeState
-};
-
-Edge no_edge() { return Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE); }
+#include "footprints/in_float.glsl"
+#include "engine/geometry/edge.glsl"
 
 // Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors", octahedral map.
 uint pack_normal(vec3 n) {

@@ -4,7 +4,11 @@
 #include "shaders/shared/scene_params.h"
 #include "shaders/footprints/face_record.glsl"
 #include "shaders/footprints/kernel.glsl"
-#include "shaders/footprints/face_cut.glsl"
+#include "footprints/in_float.glsl"
+#include "footprints/face_types.glsl"
+#include "footprints/face_cut.glsl"
+#include "engine/geometry/edge.glsl"
+#include "engine/geometry/face_form.glsl"
 
 const bool FACES = FOOTPRINTS != ISOTROPIC && WARP == FACE;  // kernels are cut at faces
 
@@ -12,16 +16,6 @@ layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 
 // Radius of the ball around its voxel in which a ray finds a surface splat's face. `error`: of the refused face.
 float trace_reach(float error) { return error < SURFACE_LOST ? SURFACE_REACH : SURFACE_AROUND; }
-
-// A face and how it cuts the kernel, or a plain kernel with the normal that it is lit by.
-struct FaceForm {
-    float value;  // phi at the voxel's centre
-    vec3 slope;   // the gradient of phi there
-    Bending h;
-    FaceCut cut;  // depth < 0: the kernel is plain
-    vec4 crease;  // normal and distance of another plane that cuts the kernel; CREASE_NONE if there is none
-    float corner;  // distance of a third plane; CORNER_NONE if there is none (crease_record.glsl)
-};
 
 const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // bits of SplatInputs::number_material.y
 const uint MAIN_AXIS_AT = 11u;  // from this bit on: the longest axis of the normal at the foot point, and its sign in the bit above

@@ -2,24 +2,8 @@
 #ifndef FACE_RECORD_GLSL
 #define FACE_RECORD_GLSL
 
-// Symmetric matrix: xx yy zz, yz xz xy; 1/voxel.
-struct Bending {
-    vec3 diagonal;
-    vec3 mixed;
-};
-
-vec3 bent(Bending h, vec3 v) {
-    return vec3(h.diagonal.x * v.x + h.mixed.z * v.y + h.mixed.y * v.z, h.mixed.z * v.x + h.diagonal.y * v.y + h.mixed.x * v.z,
-                h.mixed.y * v.x + h.mixed.x * v.y + h.diagonal.z * v.z);
-}
-
-float bending_norm(Bending h) { return sqrt(dot(h.diagonal, h.diagonal) + 2.0 * dot(h.mixed, h.mixed)); }
-
-// The larger of the two principal curvatures, valid if H n is small. Outward bending is positive.
-float largest_bend(Bending h) {
-    float norm = bending_norm(h), sum = h.diagonal.x + h.diagonal.y + h.diagonal.z;
-    return 0.5 * (sum + sqrt(max(2.0 * norm * norm - sum * sum, 0.0)));
-}
+#include "footprints/in_float.glsl"
+#include "engine/geometry/bending.glsl"
 
 // Stores the square root: small second derivatives keep a small absolute error.
 uint pack_bending(vec3 v) {

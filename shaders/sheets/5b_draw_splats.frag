@@ -55,7 +55,7 @@ void main() {
     number_material = number_and_material;
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
-                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2_corner.x, 0.0, 0.0), crease, face_reach2_corner.y);
+                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2_corner.x, 0.0, 0.0), Plane(crease.xyz, crease.w), face_reach2_corner.y);
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
     // Computed from the pixel, not interpolated: devices round the corners of quads to fractions of a pixel.
     vec2 slope = (gl_FragCoord.xy * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);

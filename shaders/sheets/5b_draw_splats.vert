@@ -83,7 +83,7 @@ void main() {
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
         face_reach2_corner = vec2(s.face.cut.reach2, s.face.corner);
-        if (CREASES == 1u) crease = s.face.crease;
+        if (CREASES == 1u) crease = vec4(s.face.crease.n, s.face.crease.away);
     }
     if (FOOTPRINTS == TABLE) {
         first_selected = first_texel(s.selected);

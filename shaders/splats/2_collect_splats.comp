@@ -29,22 +29,12 @@ ivec3 dims;
 #include "shaders/common/labels.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
-#include "shaders/splats/classified_value.glsl"
-
-// Whether matter of the voxel's material ends on one of its six sides. Beyond the outermost samples the field continues
-// linearly, for half a voxel.
-bool may_show_surface(ivec3 p, float value, uint material) {
-    bool ends = false;
-    for (int i = 0; i < 6 && !ends; ++i) {
-        ivec3 o = ivec3(0);
-        o[i >> 1] = (i & 1) * 2 - 1;
-        ivec3 at = clamp(p + o, ivec3(0), dims - 1);
-        float beside = voxel(at);
-        if (at == p) beside = max(1.5 * value - 0.5 * voxel(clamp(p - o, ivec3(0), dims - 1)), 0.0);
-        ends = !has_data(beside) || material_of(beside) != material;
-    }
-    return ends;
-}
+float lower_end(uint material) { return params.scene.iso[material - 1u]; }
+float upper_end(uint material) { return params.scene.iso[material]; }
+#include "shaders/drivers/if_any.glsl"
+#include "engine/geometry/values_around.glsl"
+#include "engine/geometry/classified_value.glsl"
+#include "engine/geometry/ends_beside.glsl"
 
 void main() {
     dims = params.scene.dims;
@@ -76,7 +66,7 @@ void main() {
         uvec2 code = uvec2(0u);
         IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.translucent_mask != 0u)) code = imageLoad(edges, p).xy;
         Beside beside = unpack_beside(code.y);
-        if (SURFACES == 1u) there = there && may_show_surface(p, sample_here, own);
+        if (SURFACES == 1u) there = there && ends_beside(p, sample_here, own);
         for (uint material = 0u; material <= ISO_COUNT; ++material) {
             bool carried = material + beside.below >= own && material <= own + beside.above;
             bool visible = there && (material == own ? has_data(sample_here) && in_mask(params.scene.visible_mask, own)

@@ -13,6 +13,9 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
+// Only between samples of two values is the shape of the field unknown: there creases are looked for, which the spline
+// rounds.
+layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
@@ -29,9 +32,35 @@ vec3 field_gradient(ivec3 p) {
     if (ESTIMATOR == CUBIC) return bspline_slope(p, vec3(0.0)).xyz;
     return voxel_gradient(p);
 }
-#include "shaders/splats/fit_face.glsl"
-// After what it uses.
-#include "shaders/splats/fit_surface.glsl"
+
+float lower_end(uint material) { return params.scene.iso[material - 1u]; }
+float upper_end(uint material) { return params.scene.iso[material]; }
+ivec3 volume_dims() { return params.scene.volume_dims; }
+float noise() { return params.scene.noise; }
+#include "shaders/splats/crease_record.glsl"
+#include "shaders/footprints/face_record.glsl"
+
+struct StoredEdge {
+    uvec2 code;
+    uint state;
+    float away;
+    bool border;
+};
+
+StoredEdge stored_edge(ivec3 q) {
+    uvec2 code = imageLoad(edges, q).xy;
+    float away = abs(float(int(code.y << 16) >> 16)) * (EDGE_DISTANCE_UNIT / 32767.0);
+    return StoredEdge(code, code.y >> 26 & 3u, away, (code.y & EDGE_BORDER) != 0u);
+}
+
+Edge edge_of(StoredEdge stored) { return unpack_edge(stored.code.x, stored.code.y); }
+#include "engine/geometry/values_around.glsl"
+#include "engine/geometry/surfel.glsl"
+#include "engine/geometry/quadric.glsl"
+#include "engine/geometry/fit_face.glsl"
+#include "engine/geometry/surface_votes.glsl"
+#include "engine/geometry/surface_check.glsl"
+#include "engine/geometry/fit_surface.glsl"
 
 uvec2 packed_traits(Face face) {
     if (face.creased) return pack_crease(face.crease, face.corner);
@@ -61,25 +90,11 @@ void main() {
             with_crease = face.creased;
             traced = face.traced;
         } else if (FACES == 1u) {
-            // The voxel's own surfel is one point of the surface; the fitted face uses all surfels around and cuts the
-            // kernel.
-            Face face = fit_face(p, material);
-            bool near = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
-            bool through = in_mask(params.scene.translucent_mask, material);
-            bool cut = near && (!through || abs(face.edge.d) < KERNEL_RADIUS);
-            vec3 g = cut ? vec3(0.0) : field_gradient(p);
-            float slope = length(g);
-            Edge plain = Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
-            // If the face is too far away to cut the kernel, the splat is lit with the face's normal at the voxel.
-            vec3 under = (face.edge.state == EDGE_UPPER ? -1.0 : 1.0) * (face.edge.n - face.edge.d * bent(face.h, face.edge.n));
-            vec3 lit = mix(under / max(length(under), 1e-6), plain.n, slope >= GRADIENT_MIN ? face.steep : 0.0);
-            if (near && dot(lit, lit) > 1e-6) plain = Edge(normalize(lit), 1e9, 1e9, EDGE_NORMAL);
-            if (material_at(p) != material) plain = Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER);
-            e = cut ? face.edge : plain;
+            Face face = finished_face(p, material, in_mask(params.scene.translucent_mask, material), params.scene.band);
+            e = face.edge;
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
-            BendingsRef(params.scene.traits).at[i] = cut ? packed_traits(face) : uvec2(0u);
-            with_crease = cut && face.creased;
-            traced = cut && face.traced;
+            BendingsRef(params.scene.traits).at[i] = packed_traits(face);
+            with_crease = face.creased;
         }
         with_edge = e.state >= EDGE_LOWER;
         splats.at[i] = Splat(splat.voxel, normal, (e.state == EDGE_NONE ? 0u : pack_edge(e)) | (material << 28));

@@ -52,7 +52,7 @@ bool looks_away(uint i, Edge e, uint material, Projection p) {
     FaceTraits t = traits_of(i, e, material);
     vec3 to = p.position + p.centre - params.frame.eye;
     float away = length(to), turns = SURFACE_REACH * (bending_norm(t.h) + 1.0 / max(away - SURFACE_REACH, 1e-3));
-    return !is_traced_at(i, e, p.view.z) && t.crease.w >= CREASE_REACH && dot(to, e.n) > away * turns;
+    return !is_traced_at(i, e, p.view.z) && t.crease.away >= CREASE_REACH && dot(to, e.n) > away * turns;
 }
 
 void main() {

@@ -67,7 +67,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
                    vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), f.corner));
-        if (CREASES == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CREASE), f.crease);
+        if (CREASES == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CREASE), vec4(f.crease.n, f.crease.away));
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
@@ -109,9 +109,12 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     if (FACES) {
         vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
-        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0), CREASE_NONE, d.w);
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0), no_plane(), d.w);
         s.inputs.number_material = uvec2(floatBitsToUint(d.y), floatBitsToUint(d.z));
-        if (CREASES == 1u) s.inputs.face.crease = imageLoad(prepared, prepared_texel(at + PREPARED_CREASE));
+        if (CREASES == 1u) {
+            vec4 plane = imageLoad(prepared, prepared_texel(at + PREPARED_CREASE));
+            s.inputs.face.crease = Plane(plane.xyz, plane.w);
+        }
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));

@@ -68,20 +68,16 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         bool is_cut = e.state >= EDGE_LOWER && e.d < params.frame.support + FACE_DEPTH;
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
-        Bending h = Bending(vec3(0.0), vec3(0.0));
-        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
-                          CREASE_NONE, CORNER_NONE);
+        s.face = plain_form(e.state == EDGE_NONE ? vec3(0.0) : e.n);
         IF_ANY(is_cut) {
             FaceTraits traits = traits_of(number, e, splat.edge >> 28);
             FaceCut cut = FaceCut(e.d * e.n.x, e.d * e.n.y, e.d * e.n.z, 0.0, 0.0);
-            if (SURFACES == 0u) cut = cut_of(e, traits);
-            h = traits.h;
+            if (SURFACES == 0u) cut = cut_of(e, traits, params.frame.band, CREASES == 1u);
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
             s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
-            vec3 at_foot = bent(h, e.d * e.n);
-            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, traits.corner);
+            s.face = face_form_of(e, traits, cut);
         }
         if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced_at(number, e, p.view.z) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;

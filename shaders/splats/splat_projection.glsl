@@ -29,14 +29,6 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-// Properties of a face besides its normal and distance.
-struct FaceTraits {
-    Bending h;
-    vec4 crease;
-    float corner;
-    float deepest;  // the kernel is sampled at most this deep under the face, voxels
-};
-
 // Whether rays find the splat's face.
 bool is_traced(uint number) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
@@ -61,35 +53,22 @@ float votes_before() { return SURFACE_REACH + (CREASES == 1u ? SURFACE_CREASE : 
 FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
     bool hides = (params.frame.translucent_mask >> material & 1u) == 0u;
-    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE, CORNER_NONE, hides ? FACE_DEPTH : 0.0);
+    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), no_plane(), NO_PLANE, hides ? FACE_DEPTH : 0.0);
     if (CREASES == 1u) {
         bool creased = (code.x & FACE_CREASED) != 0u;
-        t.crease = creased ? unpack_crease(code) : t.crease;
+        if (creased) t.crease = unpack_crease(code);
         t.corner = creased ? unpack_corner(code) : t.corner;
         t.h = Bending(creased ? vec3(0.0) : t.h.diagonal, creased ? vec3(0.0) : t.h.mixed);
     }
     // The table contains plane faces only: slightly bent faces count as plane. It contains no walls.
-    bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.w >= CREASE_REACH;
+    bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.away >= CREASE_REACH;
     t.h = Bending(flat_enough ? vec3(0.0) : t.h.diagonal, flat_enough ? vec3(0.0) : t.h.mixed);
     return t;
 }
 
 bool is_in_table(uint number, Edge e, uint material) {
     FaceTraits t = traits_of(number, e, material);
-    return t.deepest == params.frame.table_depth && e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.w >= CREASE_REACH;
-}
-
-FaceCut cut_of(Edge e, inout FaceTraits t) {
-    float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
-    FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, t.deepest);
-    if (CREASES == 1u) {
-        // A plane that cuts nothing is removed. A corner's plane is the furthest of the three.
-        bool cuts = t.crease.w < params.frame.support + cut.depth;
-        t.crease = cuts ? t.crease : CREASE_NONE;
-        t.corner = cuts ? t.corner : CORNER_NONE;
-        cut = with_crease(cut, t.crease.w);
-    }
-    return cut;
+    return t.deepest == params.frame.table_depth && e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.away >= CREASE_REACH;
 }
 
 // Bounds of a sphere's perspective image along one screen axis. s = slope of a plane through the eye, relative to the
@@ -147,10 +126,10 @@ Projection place_splat(uint number, Splat splat, Edge e) {
     IF_ANY(FACES && cut_or_warped) {
         FaceTraits traits = traits_of(number, e, splat.edge >> 28);
         if (SURFACES == 1u) {
-            bool creased = traits.crease.w < CREASE_REACH;
+            bool creased = traits.crease.away < CREASE_REACH;
             support = vec2(creased ? 0.0 : e.d, SURFACE_REACH + (creased ? SURFACE_CREASE : 0.0));
         } else {
-            FaceCut cut = cut_of(e, traits);
+            FaceCut cut = cut_of(e, traits, params.frame.band, CREASES == 1u);
             support = vec2(cut.shift, cut.radius);
         }
         // Only the ray will find where the surface cuts the kernel.

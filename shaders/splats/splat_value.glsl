@@ -7,12 +7,13 @@
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/footprints/face_form.glsl"
-#include "shaders/footprints/face.glsl"
-#include "shaders/splats/face_sight.glsl"
+#include "footprints/face.glsl"
+#include "shaders/drivers/if_any.glsl"
+#include "engine/geometry/face_sight.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 #include "shaders/common/clip_ray.glsl"
-#define Real float
+#include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
 #include "shaders/light/shading.glsl"
 
@@ -81,14 +82,13 @@ VolumePiece piece_in_volume(vec3 u) {
 // at the border, else 0. `ahead`: distance along u from the eye to p.
 vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
-    vec3 slope = sight.slope + end.z * sight.turn;
-    if (CREASES == 1u) slope = end.plane == 1 ? face_form.crease.xyz : end.plane == 2 ? corner_normal() : slope;
+    vec3 slope = normal_at(sight, end, CREASES == 1u);
     // Both faces of a layer between two iso-values face the lower values.
     uint axis = number_material.y >> MAIN_AXIS_AT;
     float along = (axis & 3u) == 0u ? slope.x : (axis & 3u) == 1u ? slope.y : slope.z;
-    bool is_other = ((axis & 4u) != 0u ? -end.side : end.side) * along < 0.0;
+    bool is_other = ((axis & 4u) != 0u ? -along : along) < 0.0;
     upward = upward != ((number_material.y & IS_MIXED) != 0u && is_other);
-    vec3 outward = (upward ? -end.side : end.side) * slope;
+    vec3 outward = upward ? -slope : slope;
     vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
     bool at_border = dot(border, border) > 0.0;
     if (at_border) world_normal = border;

@@ -2,7 +2,7 @@
 // two pieces in the matter. docs/method/tiles.md, 5_trace_faces. The including shader declares `coefficients` and `dims`.
 #ifndef EDGESPLAT_TRACE_RAY_GLSL
 #define EDGESPLAT_TRACE_RAY_GLSL
-#define Real float
+#include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"

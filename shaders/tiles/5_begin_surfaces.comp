@@ -19,7 +19,7 @@ ivec3 dims;
 #define CLIP_PARAMS params.frame
 #include "shaders/footprints/slice.glsl"
 #include "shaders/common/clip_ray.glsl"
-#define Real float
+#include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
 #include "shaders/common/volume_sampling.glsl"
 #include "shaders/common/matter.glsl"

@@ -45,7 +45,7 @@ FaceForm face_form;
 #include "shaders/tiles/outline.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip_ray.glsl"
-#define Real float
+#include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
 #include "shaders/tiles/ray_parts.glsl"
 #include "shaders/tiles/tile_marks.glsl"
@@ -58,9 +58,8 @@ FaceForm face_form;
 
 SurfaceVote vote_of_crease(vec3 p, vec3 u) {
     bool corner = abs(face_form.corner) < FACE_NO_WALL;
-    SurfacePlane third = SurfacePlane(corner ? normalize(corner_normal()) : vec3(0.0), corner ? abs(face_form.corner) : CORNER_NONE);
-    vec4 second = face_form.crease;
-    return vote_of_planes(SurfacePlane(face_form.slope, -face_form.value), SurfacePlane(second.xyz, second.w), third, SURFACE_REACH, p, u);
+    Plane third = Plane(corner ? normalize(corner_normal()) : vec3(0.0), corner ? abs(face_form.corner) : NO_PLANE);
+    return vote_of_planes(Plane(face_form.slope, -face_form.value), face_form.crease, third, SURFACE_REACH, p, u);
 }
 
 // The vote of a splat that no quadric fits. `ahead`: distance along u from the eye to p.
@@ -141,8 +140,8 @@ void main() {
                 if (COUNT == 1u) evaluated += open ? 1u : 0u;
                 SurfaceVote vote = vote_of(SurfaceSplat(face_form.value, face_form.slope, face_form.h, foot, SURFACE_REACH), p, u);
                 if (CREASES == 1u) {
-                    IF_ANY(face_form.crease.w < CREASE_REACH) {
-                        if (face_form.crease.w < CREASE_REACH) vote = vote_of_crease(p, u);
+                    IF_ANY(face_form.crease.away < CREASE_REACH) {
+                        if (face_form.crease.away < CREASE_REACH) vote = vote_of_crease(p, u);
                     }
                 }
                 if (TRACED == 1u) {

@@ -1,7 +1,6 @@
 // The votes about a pixel, kept between rounds and chunks. Include after shaders/drivers/texels.glsl and
 // shaders/footprints/face_record.glsl.
-#define Real float
-#define INOUT(type) inout type
+#include "footprints/in_float.glsl"
 #include "engine/geometry/surface_votes.glsl"
 
 // SurfaceVotes::number on the device: bits 0-27 the splat's number, 28-31 the material that is shown.

@@ -83,7 +83,7 @@ TEST(FootprintTableOnTheDevice, ExistsOnlyWhileNeeded) {
     const double depth = table_depth(s.scene, s.volume.geometry);
     EXPECT_TRUE(std::ranges::equal(got, kept_footprint_table(depth).texels()));
     // The other scene's faces have another depth.
-    s.scene.materials.back().extinction = depth < kFaceDepth ? 40 : 0.1;
+    s.scene.materials.back().extinction = depth < FACE_DEPTH ? 40 : 0.1;
     draw(FootprintMode::Table);
     const double other = table_depth(s.scene, s.volume.geometry);
     ASSERT_NE(other, depth);

@@ -11,7 +11,6 @@
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/5_draw_splats.h"
-#include "engine/reference/creases.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"

@@ -95,7 +95,7 @@ void for_all_rays(const Check& check) {
 
 TEST(FootprintLimits, FootprintsOfEveryRayAndDistanceAreBounded) {
     const double largest = kernel_footprint(0);
-    for (const double d : {0.0, 1e-300, 0.3, 1.6, kReach + kFaceDepth, 1e3}) {
+    for (const double d : {0.0, 1e-300, 0.3, 1.6, kReach + FACE_DEPTH, 1e3}) {
         for (const double side : {-1.0, 1.0}) {
             for_all_rays([&](const Ray& ray) {
                 const PaperEdge edge{side * d, {}};
@@ -107,7 +107,7 @@ TEST(FootprintLimits, FootprintsOfEveryRayAndDistanceAreBounded) {
                 }
                 // No footprint exceeds the kernel's maximum times the length of its support.
                 ASSERT_LE(warped, kernel(0) * 2 * kPaperReach) << d << " " << ray.un;
-                ASSERT_LE(cut, kernel(0) * 2 * (kReach + kFaceDepth)) << d << " " << ray.un;
+                ASSERT_LE(cut, kernel(0) * 2 * (kReach + FACE_DEPTH)) << d << " " << ray.un;
                 ASSERT_LE(flat, largest * (1 + 1e-12));
             });
         }
@@ -116,7 +116,7 @@ TEST(FootprintLimits, FootprintsOfEveryRayAndDistanceAreBounded) {
 
 TEST(FootprintLimits, EdgeOutOfReachChangesNothing) {
     for_all_rays([&](const Ray& ray) {
-        const double plain = kernel_footprint(ray.rho2), reach = kReach + kFaceDepth;
+        const double plain = kernel_footprint(ray.rho2), reach = kReach + FACE_DEPTH;
         ASSERT_NEAR(procedural_footprint(ray, PaperEdge{kReach, {}}), plain, 1e-15);
         ASSERT_NEAR(FacePath(plane_face(ray, reach), plane_cut(reach)).footprint(32).integral, plain, 1e-6);
         ASSERT_EQ(FacePath(plane_face(ray, -reach), plane_cut(-reach)).footprint(5).integral, 0);

@@ -57,6 +57,9 @@ inline float acos(float v) {
 // GLSL literals are float, C++ literals are double: results are rounded to float when they are stored.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
+#undef EDGESPLAT_FACE_TYPES_GLSL
+#define Real float
+#define CONSTANT const
 // The including shader sets the number of nodes per piece of a footprint: one copy of the source for each number.
 namespace nodes4 {
 const uint NODES = 4;
@@ -65,7 +68,7 @@ uint NARROW = 0;
 
 // Included after its dependencies.
 const uint FACE_PIECES = 2;
-#include "shaders/footprints/face.glsl"
+#include "footprints/face.glsl"
 
 // The table's layers, and the bilinear lookup of a sampler with linear filter.
 const std::uint16_t* layers = nullptr;
@@ -91,6 +94,8 @@ const uint NODES = 10;
 const uint NARROW = 0;
 #include "shaders/footprints/footprint.glsl"
 }  // namespace nodes10
+#undef CONSTANT
+#undef Real
 #pragma GCC diagnostic pop
 
 }  // namespace glsl
@@ -123,10 +128,8 @@ glsl::FootprintParams params_of(const PaperShape& shape) {
             static_cast<float>(kPaperReach)};
 }
 
-TEST(FootprintShader, MirrorsFaces) {
+TEST(FootprintShader, RoundsFaces) {
     namespace four = glsl::nodes4;
-    EXPECT_EQ(four::FACE_DEPTH, static_cast<float>(kFaceDepth));
-    EXPECT_EQ(four::FACE_FARTHEST, static_cast<float>(kFaceFarthest));
     std::mt19937 random(31);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
     const auto f = [](double v) { return static_cast<float>(v); };
@@ -149,34 +152,35 @@ TEST(FootprintShader, MirrorsFaces) {
                           glm::dot(p, turn)};
         const double thickness =
             i % 3 == 0 ? std::max(distance, -0.5) + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
-        const double deepest = i % 2 == 0 ? kFaceDepth : 0.0;
+        const double deepest = i % 2 == 0 ? FACE_DEPTH : 0.0;
         four::NARROW = i % 4 < 2 ? 1 : 0;
-        FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest,
-                                four::NARROW == 1 ? kNarrowKernel : kKernel);
+        const Kernel& kernel = four::NARROW == 1 ? kNarrowKernel : kKernel;
+        FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest, kernel);
         four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
                                            thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
         const auto plane = [&] { return glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))); };
         const glm::dvec3 normal = plane();
         const double beside = i % 4 == 1 ? uniform(0.1, 2) : 9;
-        FaceRay creased = ray;
-        creased.crease = {glm::dot(normal, p), glm::dot(normal, u)};
         const glm::dvec3 square = plane();
-        const double third = i % 8 == 1 ? beside + uniform(0, 1) : std::numeric_limits<double>::infinity();
-        creased.corner = {glm::dot(square, p), glm::dot(square, u)};
-        add_crease(want, {beside, glm::dot(normal, own)}, third);
+        const bool cuts = beside < kernel.radius + want.depth;
+        FaceCrease want_crease = kNoCrease;
+        if (cuts)
+            want_crease = {glm::dot(normal, p),
+                           glm::dot(normal, u),
+                           beside,
+                           glm::dot(normal, own),
+                           glm::dot(square, p),
+                           glm::dot(square, u),
+                           i % 8 == 1 ? beside + uniform(0, 1) : FACE_NOWHERE};
+        want = with_crease(want, beside, kernel);
         got = four::with_crease(got, f(beside));
-        const bool cuts = want.crease.distance < 9;
-        const four::FaceCrease crease{f(creased.crease.p),
-                                      f(creased.crease.u),
-                                      cuts ? f(beside) : 1e9F,
-                                      f(glm::dot(normal, own)),
-                                      f(creased.corner.p),
-                                      f(creased.corner.u),
-                                      cuts && third < 9 ? f(third) : 1e9F};
+        const four::FaceCrease crease{
+            f(want_crease.p),        f(want_crease.u),        f(want_crease.distance),       f(want_crease.facing),
+            f(want_crease.corner_p), f(want_crease.corner_u), f(want_crease.corner_distance)};
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
-        EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
-        EXPECT_GE(static_cast<double>(got.shift + got.radius), want.kernel->radius - 0.01);
-        const FaceFootprint a = FacePath(creased, want).footprint(4);
+        EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), std::sqrt(want.reach2), 1e-4);
+        EXPECT_GE(static_cast<double>(got.shift + got.radius), kernel.radius - 0.01);
+        const FaceFootprint a = FacePath(ray, want, want_crease, kernel).footprint(4);
         const four::FaceFootprint b =
             four::footprint_face({f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), f(ray.across), f(ray.turn)},
                                  got, true, crease, {-1e9F, 1e9F});
@@ -185,7 +189,7 @@ TEST(FootprintShader, MirrorsFaces) {
         ++cut;
         const auto differ = [](const four::FaceEnd& got_end, const FaceEnd& want_end) {
             return std::abs(static_cast<double>(got_end.z) - want_end.z) > 1e-3 ||
-                   (got_end.side < 0) != want_end.behind || got_end.plane != want_end.plane;
+                   (got_end.side < 0) != (want_end.side < 0) || got_end.plane != want_end.plane;
         };
         entries += differ(b.entry, a.entry) || differ(b.leave, a.leave) ? 1 : 0;
     }
@@ -209,7 +213,7 @@ TEST(FootprintShader, BorderWeightReplacesMissingKernels) {
 TEST(FootprintShader, MirrorsTheTable) {
     namespace four = glsl::nodes4;
     const auto f = [](double v) { return static_cast<float>(v); };
-    for (const double depth : {kFaceDepth, 0.0}) {
+    for (const double depth : {FACE_DEPTH, 0.0}) {
         const FootprintTable& table = kept_footprint_table(depth);
         four::NARROW = depth > 0 ? 1 : 0;
         four::layers = table.texels().data();

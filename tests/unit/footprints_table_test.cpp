@@ -19,7 +19,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Accurate to 1e-5 of the peak. The integrand has a kink where the depth of sampling reaches its minimum.
 double exact(const Ray& ray, double distance, double depth) {
-    const FacePath path(plane_face(ray, distance), face_cut(distance, 0, 0, kInfinity, depth, kernel_of_table(depth)));
+    const FacePath path(plane_face(ray, distance), face_cut(distance, 0, 0, kInfinity, depth, kernel_of_table(depth)),
+                        kNoCrease, kernel_of_table(depth));
     const double bends = (distance - depth - ray.pn) / ray.un;
     return path.footprint(24, {.high = bends}).integral + path.footprint(24, {.low = bends}).integral;
 }
@@ -122,12 +123,12 @@ TEST_P(FootprintTableDepth, CodesDescribeFacePosition) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Depths, FootprintTableDepth, testing::Values(kFaceDepth, 0.0),
-                         [](const auto& test) { return test.param == kFaceDepth ? "opaque" : "translucent"; });
+INSTANTIATE_TEST_SUITE_P(Depths, FootprintTableDepth, testing::Values(FACE_DEPTH, 0.0),
+                         [](const auto& test) { return test.param == FACE_DEPTH ? "opaque" : "translucent"; });
 
 TEST(FootprintTable, IsMadeOnceAndHasOneSize) {
-    const FootprintTable& table = kept_footprint_table(kFaceDepth);
-    EXPECT_EQ(&table, &kept_footprint_table(kFaceDepth));
+    const FootprintTable& table = kept_footprint_table(FACE_DEPTH);
+    EXPECT_EQ(&table, &kept_footprint_table(FACE_DEPTH));
     EXPECT_EQ(table.texels().size(), std::size_t{shader::TABLE_LAYERS} * shader::TABLE_ROWS * shader::TABLE_WIDTH);
 }
 

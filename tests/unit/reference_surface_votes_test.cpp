@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "engine/geometry/in_double.h"
+#include "tests/unit/reference_random.h"
 
+#undef EDGESPLAT_BENDING_GLSL
 #undef EDGESPLAT_SURFACE_VOTES_GLSL
 namespace edgesplat::in_float {
 
@@ -15,7 +17,6 @@ using Real = float;
 using uint = std::uint32_t;
 using vec2 = glm::vec2;
 using vec3 = glm::vec3;
-using Bending = glm::mat3;
 using glm::abs;
 using glm::clamp;
 using glm::dot;
@@ -28,10 +29,6 @@ using shader::SURFACE_CERTAIN;
 using shader::SURFACE_CHORD;
 using shader::SURFACE_SURE;
 using shader::SURFACE_WINDOW;
-
-inline vec3 bent(const Bending& h, const vec3& v) {
-    return h * v;
-}
 
 // GLSL literals are float, C++ literals double: glm's functions take two arguments of one type.
 inline float max(float a, double b) {
@@ -47,6 +44,8 @@ inline vec3 operator*(double factor, const vec3& v) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 #define INOUT(type) type&
+#include "engine/geometry/bending.glsl"
+// After what it uses.
 #include "engine/geometry/surface_votes.glsl"
 #undef INOUT
 #pragma GCC diagnostic pop
@@ -56,35 +55,18 @@ inline vec3 operator*(double factor, const vec3& v) {
 namespace edgesplat::geometry {
 namespace {
 
+using testing_random::Random;
+
 /// phi = (|x - c|^2 - r^2) / (2 r) about the origin; the foot lies towards the origin.
 SurfaceSplat ball(const vec3& center, double radius, double reach) {
     SurfaceSplat splat;
     splat.value = (glm::dot(center, center) - radius * radius) / (2 * radius);
     splat.slope = -center / radius;
-    splat.h = glm::dmat3(1 / radius);
+    splat.h.diagonal = glm::dvec3(1 / radius);
     splat.foot = center - radius * glm::normalize(center);
     splat.reach = reach;
     return splat;
 }
-
-class Random {
-  public:
-    double operator()(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
-    vec3 direction() {
-        vec3 v(0);
-        while (!(glm::length(v) > 0.1 && glm::length(v) < 1))
-            v = {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)};
-        return glm::normalize(v);
-    }
-    /// A point across u, as rays are described.
-    vec3 across(const vec3& u, double most) {
-        const vec3 v = most * direction();
-        return v - glm::dot(v, u) * u;
-    }
-
-  private:
-    std::mt19937 engine_{20};
-};
 
 TEST(SurfaceVotes, OnABallAreWhereTheRayEntersIt) {
     Random random;
@@ -116,7 +98,7 @@ TEST(SurfaceVotes, InsideAHollowSayNothing) {
     SurfaceSplat hollow = ball({0, 0, 3}, 2.5, 1.3);
     hollow.value = -hollow.value;
     hollow.slope = -hollow.slope;
-    hollow.h = -hollow.h;
+    hollow.h = scaled(hollow.h, -1);
     const SurfaceVote vote = vote_of(hollow, {0, 0.1, 0.2}, {1, 0, 0});
     EXPECT_EQ(vote.weight, 0);
 }
@@ -125,14 +107,14 @@ TEST(SurfaceVotes, OfPlanesAreWhereTheRayIsInsideAllOfThem) {
     Random random;
     int hits = 0;
     for (int k = 0; k < 20000; ++k) {
-        const SurfacePlane one{random.direction(), random(0, 1)}, two{random.direction(), random(0, 1.4)};
-        const SurfacePlane three{random.direction(), k % 2 == 0 ? 1e9 : random(0, 1.4)};
+        const Plane one{random.direction(), random(0, 1)}, two{random.direction(), random(0, 1.4)};
+        const Plane three{random.direction(), k % 2 == 0 ? 1e9 : random(0, 1.4)};
         const vec3 u = random.direction(), p = random.across(u, 1.2);
         const SurfaceVote vote = vote_of_planes(one, two, three, 1.3, p, u);
         if (!(vote.weight > 0)) continue;
         const auto outside = [&](double z) {
             double most = -1e9;
-            for (const SurfacePlane& plane : {one, two, three})
+            for (const Plane& plane : {one, two, three})
                 most = std::max(most, glm::dot(plane.n, p + z * u) - plane.away);
             return most;
         };
@@ -324,7 +306,7 @@ TEST(SurfaceVotes, InFloatEqualThoseInDouble) {
         in_float::SurfaceSplat rounded;
         rounded.value = static_cast<float>(splat.value);
         rounded.slope = splat.slope;
-        rounded.h = splat.h;
+        rounded.h = {glm::vec3(splat.h.diagonal), glm::vec3(splat.h.mixed)};
         rounded.foot = splat.foot;
         rounded.reach = 1.3F;
         const in_float::SurfaceVote vote = in_float::vote_of(rounded, p, u);

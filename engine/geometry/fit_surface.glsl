@@ -1,14 +1,10 @@
 // The face of a surface splat: one quadric fitted to the surfels around, kept if it agrees with the field. Else the planes
 // of a crease; else rays search the field wherever the face's error, which is kept in place of the second distance, shows
-// (5_trace_faces). docs/method.md, Surface splats. Include after shaders/splats/fit_face.glsl.
-#define Real float
-#define INOUT(type) inout type
-#include "engine/geometry/surface_votes.glsl"
-#include "engine/geometry/surface_check.glsl"
-
-bool is_matter_at(ivec3 q, uint material) {
-    return all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims)) && material_at(clamp(q, ivec3(0), dims - 1)) == material;
-}
+// (5_trace_faces). docs/method/surfaces.md. Written in the subset of GLSL that is C++. The includer declares, besides what
+// fit_face.glsl needs, bspline_slope(ivec3, vec3): (gradient, value) of the spline, and noise(): standard deviation of the
+// samples' noise. Include after fit_face.glsl and surface_check.glsl.
+#ifndef EDGESPLAT_FIT_SURFACE_GLSL
+#define EDGESPLAT_FIT_SURFACE_GLSL
 
 // The number of axes along which matter ends on both sides of the voxel: 1 in a sheet, 2 in a rod, 3 in a speck. No foot
 // point lies on its far side.
@@ -21,17 +17,20 @@ int thin_axes(ivec3 p, uint material) {
     return axes;
 }
 
-// The face of voxel p of the material, beside which matter ends (2_collect_splats).
+// The face of voxel p of the material, beside which matter ends (ends_beside).
 Face fit_surface(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 0.0, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE,
-                     false, 0.0);
-    vec3 middle = vec3(0.0), n = vec3(0.0, 0.0, 1.0);
-    float nearest = KERNEL_RADIUS;
+    Face face = plain_face(no_edge());
+    face.edge.d = 0.0;
+    face.edge.state = EDGE_LOWER;
+    vec3 middle = vec3(0.0);
+    vec3 n = vec3(0.0, 0.0, 1.0);
+    Real nearest = KERNEL_RADIUS;
     uint state = EDGE_LOWER;
     bool found = false;
     // Its own surfel bounds the search.
     Surfel own_surfel = surfel_at(p, p, material, 0.0);
-    float bound = own_surfel.there && !own_surfel.border ? length(own_surfel.at) + 1e-3 : KERNEL_RADIUS;
+    Real bound = KERNEL_RADIUS;
+    if (own_surfel.there && !own_surfel.border) bound = length(own_surfel.at) + 1e-3;
     for (int i = 0; i < 125; ++i) {
         ivec3 o = around_at(i);
         Surfel s = surfel_at(p, p + o, material, length(vec3(o)) - min(nearest, bound));
@@ -46,47 +45,53 @@ Face fit_surface(ivec3 p, uint material) {
     const bool two_values = TWO_VALUES == 1u;
     IF_ANY(found) {
         Moments sums = no_moments();
-        ivec3 around = p + ivec3(round(middle));
+        ivec3 around = voxel_near(p, middle);
         for (int i = 0; i < 125; ++i) {
             ivec3 q = around + around_at(i);
             Surfel s = surfel_at(p, q, material, length(vec3(q - p) - middle) - SURFACE_FIT);
             vec3 r = s.at - middle;
-            float w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) * (1.0 / (SURFACE_FIT * SURFACE_FIT)), 0.0) : 0.0;
+            Real w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) * (1.0 / (SURFACE_FIT * SURFACE_FIT)), 0.0) : 0.0;
             IF_ANY(w > 0.0) add_surfel(sums, r, s.n, w * w);
         }
         Quadric q = quadric_of(sums);
         Foot foot = foot_of(q, -middle, vec3(0.0));
-        bool real_foot = length(foot.slope) >= 0.3 && abs(quadric_at(q, foot.at)) < 0.05 && length(foot.at) < SURFACE_FIT;
-        float scale = 1.0 / max(length(foot.slope), 0.3);
+        bool real_foot = is_foot(q, foot.at, foot.slope, SURFACE_FIT);
+        Real scale = 1.0 / max(length(foot.slope), 0.3);
         vec3 up = foot.slope / max(length(foot.slope), 1e-6);
-        SurfaceSplat own = SurfaceSplat(scale * quadric_at(q, -middle), scale * quadric_slope(q, -middle),
-                                        Bending(scale * q.h.diagonal, scale * q.h.mixed), middle + foot.at, SURFACE_REACH);
+        SurfaceSplat own = {scale * quadric_at(q, -middle), scale * quadric_slope(q, -middle), scaled(q.h, scale), middle + foot.at,
+                            SURFACE_REACH};
         bool upper = state == EDGE_UPPER;
-        float iso = params.scene.iso[upper ? material : max(material, 1u) - 1u];
+        Real iso = upper ? upper_end(material) : lower_end(max(material, 1u));
         SurfaceCheck check = no_check();
         IF_ANY(real_foot) {
             for (int k = 0; k < SURFACE_CHECKS; ++k) {
                 vec3 at = checked_point(own, up, k);
                 vec4 field = bspline_slope(p, at);
-                check_point(check, own, at, field.w - iso, upper ? -field.xyz : field.xyz);
+                vec3 slope = vec3(field);
+                check_point(check, own, at, field.w - iso, upper ? -slope : slope);
             }
         }
-        float wrong = 0.0, least = 1e9, most = -1e9;
+        Real wrong = 0.0;
+        Real least = 1e9;
+        Real most = -1e9;
         for (int i = 0; i < 27; ++i) {
-            ivec3 o = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-            float value = voxel(clamp(p + o, ivec3(0), dims - 1));
+            ivec3 o = sample_around(i);
+            Real value = voxel(clamp(p + o, ivec3(0), dims - 1));
             least = min(least, value);
             most = max(most, value);
             wrong = max(wrong, contradiction(own, vec3(o), is_matter_at(p + o, material)));
         }
         int thin = thin_axes(p, material);
-        bool agrees = is_verified(check, params.scene.noise, most - least) && dot(own.foot, up) > -0.05 &&
-                      wrong <= SURFACE_SIDE + moved_by_noise(check.steep, params.scene.noise);
+        bool agrees = is_verified(check, noise(), most - least) && dot(own.foot, up) > -0.05 &&
+                      wrong <= SURFACE_SIDE + moved_by_noise(check.steep, noise());
         // Between samples of only two values the field says nothing.
         kept = real_foot && thin == 0 && (two_values || agrees);
-        float error = max(max(error_of(check), wrong), thin == 1 ? SURFACE_SHEET : 0.0);
+        Real error = max(max(error_of(check), wrong), thin == 1 ? SURFACE_SHEET : Real(0.0));
         if (real_foot) face.h = own.h;
-        face.edge = Edge(real_foot ? up : n, dot(real_foot ? own.foot : middle, real_foot ? up : n), real_foot && thin < 2 ? error : 1e9, state);
+        face.edge.n = real_foot ? up : n;
+        face.edge.d = dot(real_foot ? own.foot : middle, face.edge.n);
+        face.edge.d2 = real_foot && thin < 2 ? error : 1e9;
+        face.edge.state = state;
         // Planes go further than the field, which rounds sharp edges.
         if (two_values) {
             Face planes = fit_face(p, material);
@@ -96,3 +101,4 @@ Face fit_surface(ivec3 p, uint material) {
     face.traced = !face.creased && !kept;
     return face;
 }
+#endif
