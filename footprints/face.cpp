@@ -1,56 +1,27 @@
 #include "footprints/face.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "footprints/gauss_legendre.h"
 
 namespace edgesplat {
 
+namespace in_double {
 namespace {
 
-using uint = std::uint32_t;
-
-double abs(double v) {
-    return std::abs(v);
-}
-double sqrt(double v) {
-    return std::sqrt(v);
-}
-double inversesqrt(double v) {
-    return 1 / std::sqrt(v);
-}
-double min(double a, double b) {
-    return std::min(a, b);
-}
-double max(double a, double b) {
-    return std::max(a, b);
-}
-double clamp(double v, double low, double high) {
-    return std::clamp(v, low, high);
-}
-
-/// face.glsl in double precision, with what it asks its includer for.
-struct CutKernel {
-    explicit CutKernel(const Kernel& of, FacePieces choice = FacePieces::Both, const QuadratureRule& rule = {})
-        : kernel(of),
-          KERNEL_R(of.radius),
-          KERNEL_R2(of.radius * of.radius),
-          KERNEL_INVERSE_R2(1 / KERNEL_R2),
+/// face.glsl, with the kernel and the rule that it asks for.
+struct CutKernel : KernelSource {
+    explicit CutKernel(const Kernel& kernel, FacePieces choice = FacePieces::Both, const QuadratureRule& rule = {})
+        : KernelSource(kernel),
           FACE_PIECES(choice == FacePieces::Both ? 2 : 1),
           FOOTPRINT_NODES(static_cast<int>(rule.size())),
           FOOTPRINT_NODE(rule.nodes.data()),
           FOOTPRINT_WEIGHT(rule.weights.data()) {}
 
-    const Kernel& kernel;
-    double KERNEL_R, KERNEL_R2, KERNEL_INVERSE_R2;
     uint FACE_PIECES;
     int FOOTPRINT_NODES;
     static constexpr int FOOTPRINT_RULE = 0;
-    const double* FOOTPRINT_NODE;
-    const double* FOOTPRINT_WEIGHT;
-
-    double kernel_at(double inside) const { return kernel_inside(inside, kernel); }
+    const double *FOOTPRINT_NODE, *FOOTPRINT_WEIGHT;
 
 #define Real double
 #include "footprints/face.glsl"
@@ -58,6 +29,9 @@ struct CutKernel {
 };
 
 }  // namespace
+}  // namespace in_double
+
+using in_double::CutKernel;
 
 double quadratic_at(const Quadratic& q, double z) {
     return CutKernel(kKernel).quadratic_at(q, z);

@@ -149,10 +149,9 @@ Real sampled_beyond(FaceRay ray, FacePiece piece, bool creased, FaceCrease creas
         Real across = piece.edge.p + z * piece.edge.u + (held - t) * crease.facing;
         Real kept = min(across, piece.edge.level);
         beyond += kept * kept - across * across;
-        // A face is curved: a point moved along two normals may seem to be nearer than the voxel.
-        beyond = max(beyond, -ray.rho2);
     }
-    return beyond;
+    // A face is curved: a point moved along two normals may seem to be nearer than the voxel. Rounding may move it far.
+    return max(beyond, -ray.rho2);
 }
 
 // The cut kernel at the point z of the ray, which lies in the piece.

@@ -13,34 +13,18 @@ double remaining(double r2, const Kernel& k) {
 
 }  // namespace
 
-double kernel_footprint(double rho2, const Kernel& k) {
+const KernelCoefficients& kept_footprint_coefficients(const Kernel& k) {
     static constexpr KernelCoefficients kWide = footprint_coefficients(kKernel);
     static constexpr KernelCoefficients kNarrow = footprint_coefficients(kNarrowKernel);
-    const double w = remaining(rho2, k);
-    const KernelCoefficients& g = k.radius < kKernelRadius ? kNarrow : kWide;
-    return w * w * std::sqrt(w) * (g[0] + w * (g[1] + w * (g[2] + w * (g[3] + w * (g[4] + w * g[5])))));
+    return k.radius < kKernelRadius ? kNarrow : kWide;
+}
+
+double kernel_footprint(double rho2, const Kernel& k) {
+    return in_double::KernelSource(k, &kept_footprint_coefficients(k)).kernel_footprint(rho2);
 }
 
 double kernel_chord(double rho2, double z, const Kernel& k) {
-    const double w = remaining(rho2, k);
-    if (w <= 0) return 0;
-    // On the line K's argument is w (1 - s^2) with s = z / half chord; I_n = integral of (1-s^2)^n from 0 to s obeys
-    // (2n+1) I_n = s (1-s^2)^n + 2n I_(n-1).
-    const double half_chord = k.radius * std::sqrt(w);
-    const double s = std::clamp(z / half_chord, -1.0, 1.0);
-    const double c = 1 - s * s;
-    double power = c;                     // (1-s^2)^n
-    double integral = s - s * s * s / 3;  // I_1
-    double w_power = w;
-    double sum = 0;
-    for (std::size_t i = 0; i < k.coefficients.size(); ++i) {
-        const double n = static_cast<double>(i) + 2;
-        power *= c;
-        w_power *= w;
-        integral = (s * power + 2 * n * integral) / (2 * n + 1);
-        sum += k.coefficients[i] * w_power * integral;
-    }
-    return half_chord * sum;
+    return in_double::KernelSource(k).kernel_chord(rho2, z);
 }
 
 double kernel_plane_integral(double r2, const Kernel& k) {

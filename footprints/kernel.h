@@ -7,6 +7,8 @@
 #include <array>
 #include <cstddef>
 
+#include "footprints/in_double.h"
+
 namespace edgesplat {
 
 using KernelCoefficients = std::array<double, 6>;
@@ -43,16 +45,32 @@ constexpr KernelCoefficients footprint_coefficients(const Kernel& k) {
     return c;
 }
 
-/// K where 1 - r^2 / R^2 = v; 0 where that is negative.
-inline double kernel_inside(double v, const Kernel& k) {
-    const KernelCoefficients& c = k.coefficients;
-    const double w = v > 0 ? v : 0;
-    return w * w * (c[0] + w * (c[1] + w * (c[2] + w * (c[3] + w * (c[4] + w * c[5])))));
-}
+/// The same of a scene's kernel, kept.
+const KernelCoefficients& kept_footprint_coefficients(const Kernel& k);
+
+namespace in_double {
+/// kernel.glsl, with the kernel that it asks for.
+struct KernelSource {
+    explicit KernelSource(const Kernel& k, const KernelCoefficients* footprint = nullptr)
+        : KERNEL_R(k.radius),
+          KERNEL_R2(k.radius * k.radius),
+          KERNEL_INVERSE_R2(1 / KERNEL_R2),
+          KERNEL_K(k.coefficients.data()),
+          KERNEL_G(footprint ? footprint->data() : nullptr) {}
+
+    double KERNEL_R, KERNEL_R2, KERNEL_INVERSE_R2;
+    const double *KERNEL_K, *KERNEL_G;
+    static constexpr int KERNEL_SET = 0;
+
+#define Real double
+#include "footprints/kernel.glsl"
+#undef Real
+};
+}  // namespace in_double
 
 /// K at a squared distance r2 >= 0 from its centre; 0 from R on.
 inline double kernel(double r2, const Kernel& k = kKernel) {
-    return kernel_inside(1 - r2 / (k.radius * k.radius), k);
+    return in_double::KernelSource(k).kernel(r2);
 }
 
 /// g: integral of K along a line that passes its centre at squared distance rho2 >= 0.

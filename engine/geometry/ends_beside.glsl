@@ -1,4 +1,4 @@
-// Where surface splats are. Written in the subset of GLSL that is C++. The includer declares `dims`, voxel(ivec3),
+// Which voxels have a surface splat. Written in the subset of GLSL that is C++. The includer declares `dims`, voxel(ivec3),
 // has_data(Real) and material_of(Real).
 
 // Whether matter of voxel p, with the sample `value`, ends on one of its six sides. Beyond the outermost samples the field

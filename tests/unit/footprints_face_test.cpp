@@ -16,7 +16,7 @@ namespace {
 /// A ray at a plane face at `distance`: dot(u, n) = `cosine`; p is `along` n and `across` perpendicular to it.
 FaceRay plane_ray(double distance, double cosine, double along, double across) {
     const double pn = along, sine2 = 1 - cosine * cosine;
-    FaceRay ray;
+    FaceRay ray{};
     ray.rho2 = sine2 > 0 ? along * along / sine2 + across * across : across * across;
     ray.phi = {pn - distance, cosine, 0};
     ray.slope2 = {1, 0, 0};
@@ -76,7 +76,7 @@ double sum_in_corner(const glm::dvec2& corner, const glm::dvec2& x) {
                 const FaceCut cut = with_crease(
                     face_cut(first ? distance.x : distance.y, 0, 0, std::numeric_limits<double>::infinity()), beside);
                 const glm::dvec2 p(x.x - i, -k);
-                FaceRay ray;
+                FaceRay ray{};
                 ray.rho2 = p.x * p.x + p.y * p.y;
                 ray.phi = first ? Quadratic{p.x - distance.x, 0, 0} : Quadratic{-distance.y, 1, 0};
                 ray.slope2 = {1, 0, 0};
@@ -167,7 +167,7 @@ double sum_of_kernels(const std::array<double, 3>& n, double shift, double below
                 const std::array<double, 3> r = {0.3 + (shift - below) * n[0] - x, 0.2 + (shift - below) * n[1] - y,
                                                  (shift - below) * n[2] - z};
                 const double rn = r[0] * n[0] + r[1] * n[1] + r[2] * n[2];
-                FaceRay ray;
+                FaceRay ray{};
                 ray.rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
                 ray.phi = {rn - distance, 1, 0};
                 ray.slope2 = {1, 0, 0};

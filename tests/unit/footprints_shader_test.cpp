@@ -58,6 +58,8 @@ inline float acos(float v) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 #undef EDGESPLAT_FACE_TYPES_GLSL
+#undef EDGESPLAT_KERNEL_GLSL
+#define EDGESPLAT_IN_FLOAT_GLSL
 #define Real float
 #define CONSTANT const
 // The including shader sets the number of nodes per piece of a footprint: one copy of the source for each number.
@@ -88,7 +90,10 @@ inline float table_texel(float x, float y, float layer) {
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_SLICE_GLSL
+#undef EDGESPLAT_KERNELS_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
+#undef EDGESPLAT_PAPER_KNOTS_GLSL
+#undef EDGESPLAT_PAPER_FOOTPRINT_GLSL
 namespace nodes10 {
 const uint NODES = 10;
 const uint NARROW = 0;

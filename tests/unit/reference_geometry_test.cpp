@@ -174,6 +174,34 @@ TEST(Surfels, LieOnABall) {
     }
 }
 
+TEST(Surfels, LieBelowTheirVoxels) {
+    // Gradients beside the ball do not point to it.
+    const double radius = 6;
+    const SampledField ball({19, 18, 19}, {0.5}, [&](const vec3& x) {
+        return 0.5 + 0.12 * in_ball(x, radius) * (1 + 0.5 * std::sin(0.8 * x.x + 0.5 * x.z));
+    });
+    int found = 0;
+    ball.for_inner_voxels(1, [&](const ivec3& p) {
+        const double off = in_ball(vec3(p), radius);
+        const reference::VoxelEdge& surfel = ball.surfels[ball.field.offset(p)];
+        if (std::abs(off) > 1.1) return;
+        EXPECT_TRUE(surfel.has_edge);
+        EXPECT_NEAR(surfel.D, std::abs(off), 0.03);
+        ++found;
+    });
+    EXPECT_GT(found, 500);
+}
+
+TEST(Surfels, LieAtTheEndThatIsCrossed) {
+    // A layer whose samples are near its lower end, beside matter above its upper end.
+    const SampledField step({9, 6, 6}, {0.35, 0.65}, [](const vec3& x) { return x.x < 4 ? 0.4 : 0.9; });
+    const reference::VoxelEdge& surfel = step.surfels[step.field.offset({3, 3, 3})];
+    ASSERT_TRUE(surfel.has_edge);
+    EXPECT_TRUE(surfel.upper);
+    EXPECT_GT(surfel.n.x, 0.99);
+    EXPECT_NEAR(surfel.D, 0.5, 0.1);
+}
+
 TEST(Surfels, EndAtTheBorder) {
     const SampledField solid({6, 7, 8}, {0.5}, [](const vec3&) { return 1.0; });
     for (const auto& [p, n] : {std::pair(ivec3(0, 3, 3), vec3(-1, 0, 0)), std::pair(ivec3(3, 6, 3), vec3(0, 1, 0))}) {
@@ -189,9 +217,10 @@ TEST(Surfels, EndAtTheBorder) {
     const Face face = at.fit_face({0, 3, 3}, 1);
     EXPECT_NEAR(face.edge.d, 0.5, 1e-12);
     EXPECT_NEAR(face.edge.d2, 5.5, 1e-12);
-    const SampledField slice({6, 7, 1}, {0.5}, [](const vec3&) { return 1.0; });
-    EXPECT_EQ(slice.at().border_beside({3, 3, 0}), vec3(0, 0, 1));
-    EXPECT_EQ(slice.at().border_beside({0, 3, 0}), vec3(-1, 0, 0));
+    // An axis of one voxel comes last.
+    const SampledField slice({1, 7, 6}, {0.5}, [](const vec3&) { return 1.0; });
+    EXPECT_EQ(slice.at().border_beside({0, 3, 3}), vec3(1, 0, 0));
+    EXPECT_EQ(slice.at().border_beside({0, 0, 3}), vec3(0, -1, 0));
 }
 
 TEST(Extrapolation, IsExactOnARamp) {

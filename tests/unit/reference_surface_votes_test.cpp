@@ -62,7 +62,7 @@ SurfaceSplat ball(const vec3& center, double radius, double reach) {
     SurfaceSplat splat;
     splat.value = (glm::dot(center, center) - radius * radius) / (2 * radius);
     splat.slope = -center / radius;
-    splat.h.diagonal = glm::dvec3(1 / radius);
+    splat.h = {glm::dvec3(1 / radius), glm::dvec3(0)};
     splat.foot = center - radius * glm::normalize(center);
     splat.reach = reach;
     return splat;
@@ -348,6 +348,13 @@ TEST(SurfaceChecks, AcceptTheFieldsOwnSurfaceAndNoOther) {
         EXPECT_TRUE(is_verified(shifted, 0.05, 2));
         // Ripples do where the field rises by no more than in a voxel.
         EXPECT_TRUE(is_verified(shifted, 0, 1));
+        // A face that is too flat agrees at its foot only.
+        SurfaceSplat flat = face;
+        const vec3 n = normalize(face.foot - center);
+        flat.h = no_bending();
+        flat.slope = n;
+        flat.value = -dot(n, face.foot);
+        EXPECT_EQ(is_verified(check_of(flat, center, radius, 0), 0, 2), radius > 27);
     }
 }
 
