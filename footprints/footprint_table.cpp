@@ -12,27 +12,55 @@
 #include "shaders/shared/footprint_table.h"
 
 namespace edgesplat {
+
+namespace in_double {
+namespace {
+
+using namespace shader;
+
+/// table_layer.glsl and table_lookup.glsl, with the table that they ask for.
+struct TableSource {
+    explicit TableSource(double depth, const std::uint16_t* texels = nullptr)
+        : KERNEL_R(kernel_of_table(depth).radius), KERNEL_R2(KERNEL_R * KERNEL_R), halves(texels) {}
+
+    using FootprintLayer = edgesplat::FootprintLayer;
+    double KERNEL_R, KERNEL_R2;
+    static constexpr uint TABLE_MASK = (1U << TABLE_BLEND_BITS) - 1;
+    static constexpr double TABLE_BLEND_STEPS = static_cast<double>(shader::TABLE_BLEND_STEPS);
+    const std::uint16_t* halves;
+
+    static double mix(double a, double b, double t) { return std::lerp(a, b, t); }
+    static double floor(double v) { return std::floor(v); }
+
+    /// As a sampler with linear filter.
+    double table_texel(double x, double y, double layer) const {
+        const double column = min(floor(x), TABLE_WIDTH - 2.0), row = min(floor(y), TABLE_ROWS - 2.0);
+        const auto texel = [&](double i, double j) {
+            const double at = (layer * TABLE_ROWS + j) * TABLE_WIDTH + i;
+            return static_cast<double>(float_from_half(halves[static_cast<std::size_t>(at)]));
+        };
+        const auto across = [&](double j) { return mix(texel(column, j), texel(column + 1, j), x - column); };
+        return mix(across(row), across(row + 1), y - row);
+    }
+
+#define Real double
+#include "footprints/table_layer.glsl"
+// After what it uses.
+#include "footprints/table_lookup.glsl"
+#undef Real
+};
+
+}  // namespace
+}  // namespace in_double
+
 namespace {
 
 constexpr int kDistances = shader::TABLE_DISTANCES, kDirections = shader::TABLE_DIRECTIONS;
 constexpr int kWidth = shader::TABLE_WIDTH, kRows = shader::TABLE_ROWS;
 constexpr int kBefore = shader::TABLE_BEFORE, kAcross = shader::TABLE_ACROSS, kBeside = shader::TABLE_BESIDE;
-constexpr double kSteps = shader::TABLE_BLEND_STEPS;
 constexpr int kNodes = 16;             // on either side of the depth from which points are moved
-constexpr double kShortest = 1e-6;     // voxels: shortest stretch of x that has texels
 constexpr double kLeastCosine = 1e-4;  // layers of edge-on faces are computed at this cosine
 constexpr double kNoWidth = 1e-9;      // voxels to either side of the end of a stretch
-
-/// Sine and cosine of an angle from the tangent of its half, and the tangent from the sine.
-double sine_of(double tangent) {
-    return 2 * tangent / (1 + tangent * tangent);
-}
-double cosine_of(double tangent) {
-    return (1 - tangent * tangent) / (1 + tangent * tangent);
-}
-double tangent_of(double sine) {
-    return sine / (1 + std::sqrt(std::max(1 - sine * sine, 0.0)));
-}
 
 /// The x at which one stretch of texels in a layer's row ends and the next begins.
 struct Stretches {
@@ -44,16 +72,6 @@ Stretches stretches(const FootprintLayer& layer, double y, double radius) {
     const double ball = std::sqrt(std::max(radius * radius - y * y, 0.0));
     const double across = std::max(layer.middle - half, -ball), beside = std::max(layer.middle + half, -ball);
     return {-ball, across, beside, std::max(ball, beside)};
-}
-
-/// The texel of x, counted from the centre of the first.
-double texel_of(const Stretches& s, double x) {
-    const auto share = [&](double low, double high) {
-        return std::clamp((x - low) / std::max(high - low, kShortest), 0.0, 1.0);
-    };
-    if (x < s.across) return share(s.begin, s.across) * (kBefore - 1);
-    if (x < s.beside) return kBefore + share(s.across, s.beside) * (kAcross - 1);
-    return kBefore + kAcross + share(s.beside, s.end) * (kBeside - 1);
 }
 
 /// The x of a texel, moved slightly to its own side at the end of a stretch.
@@ -71,11 +89,6 @@ double plane_footprint(const Ray& ray, double distance, double depth) {
     return path.footprint(kNodes, {.high = turns}).integral + path.footprint(kNodes, {.low = turns}).integral;
 }
 
-std::uint32_t coded(double place, int layers, std::uint32_t& index) {
-    index = static_cast<std::uint32_t>(std::clamp(std::floor(place), 0.0, layers - 2.0));
-    return static_cast<std::uint32_t>(std::lround(std::clamp(place - index, 0.0, 1.0) * kSteps));
-}
-
 }  // namespace
 
 const Kernel& kernel_of_table(double depth) {
@@ -83,22 +96,11 @@ const Kernel& kernel_of_table(double depth) {
 }
 
 FootprintLayer decode_footprint_layer(std::uint32_t code, double depth) {
-    constexpr std::uint32_t kMask = (1U << shader::TABLE_BLEND_BITS) - 1;
-    const std::uint32_t layer = code & kMask;
-    const double distance = layer / kDirections + (code >> shader::TABLE_BLEND_BITS & kMask) / kSteps;
-    const double direction = layer % kDirections + (code >> 2 * shader::TABLE_BLEND_BITS & kMask) / kSteps;
-    const double of_distance = 2 * distance / (kDistances - 1) - 1, of_direction = direction / (kDirections - 1);
-    const double radius = kernel_of_table(depth).radius, rim = radius * cosine_of(of_distance);
-    return {code, (radius * sine_of(of_distance) + depth) * cosine_of(of_direction), sine_of(of_direction), rim * rim};
+    return in_double::TableSource(depth).decode_footprint_layer(code, depth);
 }
 
 FootprintLayer select_footprint_layer(double distance, double cosine, double depth) {
-    const double e = std::clamp((distance - depth) / kernel_of_table(depth).radius, -1.0, 1.0);
-    std::uint32_t i = 0, j = 0;
-    const std::uint32_t to_next = coded((tangent_of(e) + 1) / 2 * (kDistances - 1), kDistances, i);
-    const std::uint32_t turned = coded(tangent_of(std::clamp(cosine, 0.0, 1.0)) * (kDirections - 1), kDirections, j);
-    return decode_footprint_layer(
-        (i * kDirections + j) | to_next << shader::TABLE_BLEND_BITS | turned << 2 * shader::TABLE_BLEND_BITS, depth);
+    return decode_footprint_layer(in_double::TableSource(depth).select_footprint_layer(distance, cosine, depth), depth);
 }
 
 FootprintLayer plain_footprint_layer(double depth) {
@@ -107,12 +109,13 @@ FootprintLayer plain_footprint_layer(double depth) {
 
 FootprintTable::FootprintTable(double depth)
     : depth_(depth), texels_(std::size_t{kWidth} * kRows * shader::TABLE_LAYERS) {
-    const double radius = kernel_of_table(depth).radius;
+    in_double::TableSource source(depth);
+    const double radius = source.KERNEL_R;
     std::size_t at = 0;
     for (int i = 0; i < kDistances; ++i) {
         for (int j = 0; j < kDirections; ++j) {
-            const double e = radius * sine_of(2.0 * i / (kDistances - 1) - 1);
-            const double c = std::max(sine_of(j / (kDirections - 1.0)), kLeastCosine);
+            const double e = radius * source.half_sine(2.0 * i / (kDistances - 1) - 1);
+            const double c = std::max(source.half_sine(j / (kDirections - 1.0)), kLeastCosine);
             const double s = std::sqrt(std::max(1 - c * c, 0.0));
             const FootprintLayer layer{0, (e + depth) * s, c, radius * radius - e * e};
             for (int row = 0; row < kRows; ++row) {
@@ -129,25 +132,7 @@ FootprintTable::FootprintTable(double depth)
 }
 
 double FootprintTable::lookup(const FootprintLayer& layer, double x, double y) const {
-    constexpr std::uint32_t kMask = (1U << shader::TABLE_BLEND_BITS) - 1;
-    const double radius = kernel_of_table(depth_).radius;
-    const double u = texel_of(stretches(layer, y, radius), x), v = std::clamp(y / radius, 0.0, 1.0) * (kRows - 1);
-    const int column = std::min(static_cast<int>(u), kWidth - 2), row = std::min(static_cast<int>(v), kRows - 2);
-    const auto texel = [&](std::size_t number, int i, int j) {
-        const std::size_t at = (number * kRows + static_cast<std::size_t>(j)) * kWidth + static_cast<std::size_t>(i);
-        return static_cast<double>(float_from_half(texels_[at]));
-    };
-    const auto sample = [&](std::size_t number) {
-        const auto across = [&](int j) {
-            return std::lerp(texel(number, column, j), texel(number, column + 1, j), u - column);
-        };
-        return std::lerp(across(row), across(row + 1), v - row);
-    };
-    const double to_next = (layer.code >> shader::TABLE_BLEND_BITS & kMask) / kSteps;
-    const double turned = (layer.code >> 2 * shader::TABLE_BLEND_BITS & kMask) / kSteps;
-    const std::size_t first = layer.code & kMask, next = first + kDirections;
-    return std::lerp(std::lerp(sample(first), sample(first + 1), turned),
-                     std::lerp(sample(next), sample(next + 1), turned), to_next);
+    return in_double::TableSource(depth_, texels_.data()).footprint_looked_up(layer, x, x * x + y * y);
 }
 
 const FootprintTable& kept_footprint_table(double depth) {

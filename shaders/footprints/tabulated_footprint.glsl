@@ -8,7 +8,7 @@
 float table_texel(float x, float y, float layer) {
     return textureLod(footprint_layers, vec3((x + 0.5) / float(TABLE_WIDTH), (y + 0.5) / float(TABLE_ROWS), layer), 0.0).r;
 }
-#include "shaders/footprints/footprint_table.glsl"
+#include "footprints/table_lookup.glsl"
 
 float along_axis;  // coordinate of the ray along the axis, from the voxel; set by splat_value()
 

@@ -1,4 +1,4 @@
-// Runs shaders/footprints/footprint.glsl as C++ and compares it with the double-precision functions it mirrors.
+// Runs the footprints of the shaders as C++ in float and compares them with those in double precision.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +86,7 @@ inline float table_texel(float x, float y, float layer) {
 #include "shaders/footprints/footprint_layer.glsl"
 
 // Included after its dependencies.
-#include "shaders/footprints/footprint_table.glsl"
+#include "footprints/table_lookup.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_SLICE_GLSL
