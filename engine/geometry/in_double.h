@@ -41,6 +41,7 @@ using glm::outerProduct;
 using glm::roundEven;
 using glm::sign;
 using glm::sin;
+using glm::smoothstep;
 using glm::sqrt;
 using glm::transpose;
 
@@ -115,6 +116,7 @@ namespace {  // NOLINT(google-build-namespaces)
 // After what it uses.
 #include "engine/geometry/edge.glsl"
 #include "engine/geometry/light_ray.glsl"
+#include "engine/geometry/low_pass.glsl"
 #include "engine/geometry/quadric.glsl"
 #include "engine/geometry/surface_votes.glsl"
 // After what it uses.

@@ -148,7 +148,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const VoxelEdge& edge = record.edge;
     if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
     SeenSplat seen{record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, footprints.cuts(edge)};
-    if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
+    if (!seen.cut) return seen.at({0, 1, 0}, glm::dvec3(0), payload);
     seen.face.take(drawn_edge(edge, settings));
     seen.sight = seen.face.face_sight(p, u);
     const double radius = footprints.kernel().radius;
@@ -160,7 +160,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
         const double value = phi.c, along = phi.b;
         const double begin = std::max(along < 0 ? -value / along : -radius, -radius);
         const bool at_border = value < 0 && inside.low > std::max(begin, eye);
-        return seen.at({at_border ? inside.low : 0}, at_border ? inside.normal : glm::dvec3(0), payload);
+        return seen.at({at_border ? inside.low : 0, 1, 0}, at_border ? inside.normal : glm::dvec3(0), payload);
     }
     FaceFootprint f = footprints.at_face(edge, p, u, slice);
     const bool at_border = inside.low > std::max(f.entry.z, eye);

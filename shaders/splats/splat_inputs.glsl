@@ -90,7 +90,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     s.shape = vec3(warped ? 1.0 : -1.0, depths);
     if (ANTIALIAS == 1u) {
         LowPass f = p.filtered;
-        float matter = warped ? matter_of_voxel(e.d, e.d2, through) : 1.0;
+        float matter = warped ? matter_between(e.d, e.d2, through) : 1.0;
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
         if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;

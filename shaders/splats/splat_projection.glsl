@@ -4,7 +4,8 @@
 #ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
 #define EDGESPLAT_SPLAT_PROJECTION_GLSL
 #include "shaders/drivers/if_any.glsl"
-#include "shaders/footprints/antialias.glsl"
+#include "footprints/in_float.glsl"
+#include "engine/geometry/low_pass.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
 #include "shaders/footprints/face_form.glsl"

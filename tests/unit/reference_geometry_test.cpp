@@ -619,6 +619,41 @@ TEST(OutlinesOfFaces, LieOnTheEdgeOfACrease) {
     }
 }
 
+TEST(LowPasses, WidenKernelsToPixels) {
+    Random random;
+    for (int k = 0; k < 200; ++k) {
+        const vec3 u = random.direction(), across = random.vector(3), down = random.vector(3);
+        const LowPass f = low_pass(across, down, u, 1.6);
+        // The form A of the pixel's sides across the ray, and its determinants.
+        const vec3 x = across - dot(across, u) * u, y = down - dot(down, u) * u;
+        const double trace = dot(x, x) + dot(y, y), det = dot(x, x) * dot(y, y) - dot(x, y) * dot(x, y);
+        EXPECT_NEAR(f.of_voxels, 1 / (1 + trace + det), 1e-12);
+        EXPECT_NEAR(f.of_pixels, det / (1 + trace + det), 1e-12);
+        // The longest axis of (1 + A)^(1/2).
+        const double largest = 0.5 * trace + std::sqrt(max(0.25 * trace * trace - det, 0.0));
+        EXPECT_NEAR(f.reach, 1.6 * std::sqrt(1 + largest), 1e-9);
+        const double side = std::sqrt(max(dot(x, x), dot(y, y)));
+        EXPECT_TRUE(side >= 0.5 || f.share == 0);
+        EXPECT_TRUE(side <= 1 || f.share == 1);
+    }
+    const LowPass huge = low_pass({1e20, 0, 0}, {0, 1e20, 0}, {0, 0, 1}, 1.6);
+    EXPECT_NEAR(huge.of_pixels, 1, 1e-12);
+    EXPECT_TRUE(std::isfinite(huge.reach));
+}
+
+TEST(LowPasses, ShareTheMatterOfAVoxel) {
+    // The shares of layers a voxel apart sum to the distance from the outermost layer's face to the last.
+    for (const bool carried : {false, true})
+        for (double d = 0; d < 1; d += 0.1) {
+            double sum = 0;
+            for (int layer = carried ? -2 : 0; layer < 6; ++layer)
+                sum += matter_between(d + layer, 1e9, carried);
+            EXPECT_NEAR(sum, d + 5.5, 1e-12) << d;
+        }
+    EXPECT_EQ(matter_between(0.3, 0.4, false), 1);
+    EXPECT_NEAR(matter_between(0.3, 0.4, true), 0.7, 1e-12);
+}
+
 TEST(SurfacePoints, LieOnTheSurface) {
     VolumeGeometry grid;
     grid.dims = {9, 9, 9};
