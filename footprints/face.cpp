@@ -53,7 +53,7 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, const FaceCrease& cre
                    FacePieces choice)
     : ray_(ray), cut_(cut), crease_(crease), kernel_(&kernel), choice_(choice) {
     CutKernel faces(kernel, choice);
-    const CreaseEnds ends = is_creased() ? faces.crease_ends(crease) : CreaseEnds{};
+    const CreaseEnds ends = is_creased() ? faces.crease_ends(crease) : faces.no_crease_ends();
     const FaceWay way = faces.face_way(ray, cut, is_creased(), ends);
     half_chord_ = way.half_chord;
     const auto add = [&](double low, double high, bool from_behind, bool to_behind) {

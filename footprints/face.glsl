@@ -50,6 +50,15 @@ CreaseEnds plane_ends(Real p, Real u, Real distance, int plane) {
     return ends;
 }
 
+CreaseEnds no_crease_ends() {
+    CreaseEnds ends;
+    ends.low = -FACE_NOWHERE;
+    ends.high = FACE_NOWHERE;
+    ends.low_plane = 0;
+    ends.high_plane = 0;
+    return ends;
+}
+
 CreaseEnds crease_ends(FaceCrease crease) {
     CreaseEnds ends = plane_ends(crease.p, crease.u, crease.distance, 1);
     CreaseEnds corner = plane_ends(crease.corner_p, crease.corner_u, crease.corner_distance, 2);
@@ -124,6 +133,9 @@ FacePiece face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, 
                              to_behind ? -1.0 : 1.0);
     piece.low = from;
     piece.high = to;
+    piece.edge.p = 0.0;
+    piece.edge.u = 0.0;
+    piece.edge.level = FACE_NOWHERE;
     if (creased) {
         piece.edge.p = crease.p;
         piece.edge.u = crease.u;
@@ -181,7 +193,7 @@ Real integral_over(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Fa
 // The footprint of a cut kernel on a ray. No loop depends on the splat, because lavapipe would keep no variable in a
 // register across such a loop.
 FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Slice slice) {
-    CreaseEnds ends;
+    CreaseEnds ends = no_crease_ends();
     if (creased) ends = crease_ends(crease);
     FaceWay way = face_way(ray, cut, creased, ends);
     FacePiece piece = face_piece(ray, cut, creased, crease, ends, way.half_chord, way.low, way.high, way.from_behind, way.to_behind);

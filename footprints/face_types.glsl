@@ -71,7 +71,7 @@ struct FacePiece {
     Real high;
     FacePlane entry;
     FacePlane leave;
-    FacePlane edge;  // of the crease; only with creases
+    FacePlane edge;  // of the crease
 };
 
 // The point where a ray enters or leaves a kernel's matter.
