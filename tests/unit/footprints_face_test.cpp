@@ -127,6 +127,12 @@ TEST(Face, ThirdPlaneCutsAtCorner) {
     EXPECT_NEAR(entered.entry.z, -0.4, 1e-12);
     EXPECT_EQ(FacePath(ray, cut, corner).kernel_at(-0.41), 0);
     EXPECT_GT(FacePath(ray, cut, corner).kernel_at(-0.39), 0);
+    // Turned, it ends the ray's path.
+    corner.corner_u = 1;
+    EXPECT_NEAR(FacePath(ray, cut, corner).footprint(8).leave.z, 0.4, 1e-12);
+    EXPECT_EQ(FacePath(ray, cut, corner).kernel_at(0.41), 0);
+    EXPECT_GT(FacePath(ray, cut, corner).kernel_at(0.39), 0);
+    corner.corner_u = -1;
     // The nearer of two planes ends the matter.
     corner.u = -1;
     EXPECT_EQ(FacePath(ray, cut, corner).footprint(8).entry.plane, 2);
