@@ -277,7 +277,7 @@ TEST(FittedFaces, OfABallLieOnIt) {
 
 TEST(FittedFaces, OfWallsHaveTheirThickness) {
     const vec3 n = normalize(vec3(3, 1, -2));
-    for (const double thickness : {1.5, 2.0, 2.6}) {
+    for (const double thickness : {1.5, 2.0, 2.6, 3.2}) {
         const SampledField wall({19, 18, 19}, {0.5}, [&](const vec3& x) {
             return blurred(0.5 * thickness - std::abs(dot(x - kMiddle, n)));
         });
@@ -305,6 +305,18 @@ TEST(FittedFaces, OfWallsHaveTheirThickness) {
         EXPECT_NEAR(sum / faces, thickness, 0.15);
         EXPECT_TRUE(thickness < 2.5 || walls > 0.8 * faces) << walls << " of " << faces;
     }
+}
+
+TEST(FittedFaces, ExpandQuadraticFieldsExactly) {
+    const SampledField field({9, 8, 8}, {0.5}, [](const vec3& x) { return 0.2 + 0.05 * x.x + 0.004 * x.x * x.x; });
+    FieldGeometry at = field.at();
+    // Where the field is one half, relative to the voxel below.
+    const double end = (std::sqrt(0.05 * 0.05 + 4 * 0.004 * 0.3) - 0.05) / (2 * 0.004) - 4;
+    const auto [q, slope] = at.field_quadric({4, 4, 4}, 0.5, -1);
+    EXPECT_NEAR(quadric_at(q, vec3(end, 0.3, 0.1)), 0, 1e-5);
+    EXPECT_LT(q.c, 0);
+    EXPECT_GT(q.g.x, 0.5);
+    EXPECT_NEAR(q.h.diagonal.x * slope, 0.008, 1e-5);
 }
 
 TEST(FittedFaces, OfLayersEndAtBothIsoValues) {
@@ -361,6 +373,9 @@ TEST(FittedFaces, OfABinaryBoxHaveItsEdgesAndCorners) {
     // A flat side has none, and neither has a hollow edge of the surroundings.
     EXPECT_FALSE(at.fit_face({11, 8, 8}, 1).creased);
     EXPECT_FALSE(at.fit_face({12, 13, 8}, 0).creased);
+    SampledField hollow({16, 16, 16}, {0.5}, [](const vec3& x) { return x.x > 7 && x.y > 7 ? 0 : 1; });
+    hollow.scene.two_values = true;
+    EXPECT_FALSE(hollow.at().fit_face({7, 7, 8}, 1).creased);
 }
 
 TEST(FinishedFaces, CutOnlyNearTheMatter) {
