@@ -584,24 +584,24 @@ TEST(OutlinesOfFaces, LieWhereTheRayTouchesTheBall) {
         camera.fov_y = 0.5;
         const reference::View view(camera, grid, 64, 64);
         const double pixel = 2 * view.frame.tan_half_y * 404 / 64;
-        // The ball's outline as seen from far passes right of the voxel; the ray is `outside` pixels beyond it.
-        const double radius = random(1.5, 6), along = random(-0.4, 0.4), outside = random(-0.95, 0.95);
-        const vec3 voxel(4, 4, 4), right = view.frame.right;
-        const double d = random(-0.3, 0.5);
-        const vec3 u = normalize(voxel + vec3(0, along, 0) + (d + outside * pixel) * right - camera.eye);
+        // The ball's outline as seen from far passes right of the voxel; the ray is `outside` pixels beyond it. The
+        // normal at the voxel is turned away, so that the ray touches the ball before or behind the voxel.
+        const double radius = random(1.5, 6), turn = random(-0.12, 0.12), outside = random(-0.95, 0.95);
+        const vec3 voxel(4, 4, 4), right = view.frame.right, n = normalize(right + turn * view.frame.forward);
+        const double d = random(-0.3, 0.5), rim = radius - (radius - d) * dot(n, right);
+        const vec3 u = normalize(voxel + (rim + outside * pixel) * right - camera.eye);
         const vec3 from_eye = voxel - camera.eye;
         const double ahead = dot(from_eye, u);
         const vec3 p = ahead * u - from_eye;
-        const auto outline =
-            reference::outline_of(edge_at(right, d, {vec3(1 / radius), vec3(0)}), view, p, u, ahead, 1);
+        const reference::VoxelEdge ball = edge_at(n, d, {vec3(1 / radius), vec3(0)});
+        const auto outline = reference::outline_of(ball, view, p, u, ahead, 1);
         ASSERT_TRUE(outline) << outside;
         EXPECT_FALSE(outline->down);
         EXPECT_NEAR(outline->level, outside, 0.03);
         EXPECT_NEAR(outline->offset, -outside, 0.03);
         ++found;
         // A faint splat proves no matter.
-        const auto faint =
-            reference::outline_of(edge_at(right, d, {vec3(1 / radius), vec3(0)}), view, p, u, ahead, 0.1);
+        const auto faint = reference::outline_of(ball, view, p, u, ahead, 0.1);
         EXPECT_TRUE(std::abs(outside) < 0.05 || faint.has_value() == (outside > 0));
     }
     EXPECT_EQ(found, 400);
