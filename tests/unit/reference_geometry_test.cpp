@@ -572,25 +572,35 @@ TEST(FaceSights, OfWallsHaveTheirThickness) {
     EXPECT_GE(at.face_form.cut.thickness, FACE_NO_WALL);
 }
 
-TEST(OutlinesOfFaces, LieWhereTheRayTouchesTheBall) {
-    Random random;
+/// A small volume seen from so far that rays are almost parallel.
+reference::View far_view() {
     VolumeGeometry grid;
     grid.dims = {9, 9, 9};
+    Camera camera;
+    camera.eye = {4, -400, 4};
+    camera.direction = {0, 1, 0};
+    camera.fov_y = 0.5;
+    return {camera, grid, 64, 64};
+}
+
+/// Side of one of its pixels at the volume's middle, voxels.
+double side_of_pixel(const reference::View& view) {
+    return 2 * view.frame.tan_half_y * 404 / view.height;
+}
+
+TEST(OutlinesOfFaces, LieWhereTheRayTouchesTheBall) {
+    Random random;
+    const reference::View view = far_view();
+    const double pixel = side_of_pixel(view);
     int found = 0;
     for (int k = 0; k < 400; ++k) {
-        Camera camera;
-        camera.eye = {4, -400, 4};
-        camera.direction = {0, 1, 0};
-        camera.fov_y = 0.5;
-        const reference::View view(camera, grid, 64, 64);
-        const double pixel = 2 * view.frame.tan_half_y * 404 / 64;
         // The ball's outline as seen from far passes right of the voxel; the ray is `outside` pixels beyond it. The
         // normal at the voxel is turned away, so that the ray touches the ball before or behind the voxel.
         const double radius = random(1.5, 6), turn = random(-0.12, 0.12), outside = random(-0.95, 0.95);
         const vec3 voxel(4, 4, 4), right = view.frame.right, n = normalize(right + turn * view.frame.forward);
         const double d = random(-0.3, 0.5), rim = radius - (radius - d) * dot(n, right);
-        const vec3 u = normalize(voxel + (rim + outside * pixel) * right - camera.eye);
-        const vec3 from_eye = voxel - camera.eye;
+        const vec3 u = normalize(voxel + (rim + outside * pixel) * right - view.eye_index);
+        const vec3 from_eye = voxel - view.eye_index;
         const double ahead = dot(from_eye, u);
         const vec3 p = ahead * u - from_eye;
         const reference::VoxelEdge ball = edge_at(n, d, {vec3(1 / radius), vec3(0)});
@@ -608,21 +618,16 @@ TEST(OutlinesOfFaces, LieWhereTheRayTouchesTheBall) {
 }
 
 TEST(OutlinesOfFaces, LieOnTheEdgeOfACrease) {
-    VolumeGeometry grid;
-    grid.dims = {9, 9, 9};
-    Camera camera;
-    camera.eye = {4, -400, 4};
-    camera.direction = {0, 1, 0};
-    camera.fov_y = 0.5;
-    const reference::View view(camera, grid, 64, 64);
-    const double pixel = 2 * view.frame.tan_half_y * 404 / 64;
+    const reference::View view = far_view();
+    const double pixel = side_of_pixel(view);
     const vec3 voxel(4, 4, 4), right = view.frame.right, forward = view.frame.forward;
     // A roof whose ridge points to the right: planes turn 45 degrees away on both sides.
     reference::VoxelEdge edge = edge_at(normalize(right - forward), 0.5, no_bending());
     edge.crease = {normalize(right + forward), 0.5};
     const double ridge = std::sqrt(0.5);
     for (const double outside : {-0.7, -0.2, 0.3, 0.8}) {
-        const vec3 u = normalize(voxel + (ridge + outside * pixel) * right - camera.eye), from_eye = voxel - camera.eye;
+        const vec3 u = normalize(voxel + (ridge + outside * pixel) * right - view.eye_index),
+                   from_eye = voxel - view.eye_index;
         const double ahead = dot(from_eye, u);
         const auto outline = reference::outline_of(edge, view, ahead * u - from_eye, u, ahead, 1);
         ASSERT_TRUE(outline) << outside;
