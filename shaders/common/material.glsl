@@ -12,4 +12,8 @@ uint material_of(float value) {
     return material;
 }
 
+// The ends of a material's interval; the lowest material has no lower one.
+float lower_end(uint material) { return ISO_VALUES[material - 1u]; }
+float upper_end(uint material) { return ISO_VALUES[material]; }
+
 bool in_mask(uint mask, uint material) { return (mask >> material & 1u) == 1u; }

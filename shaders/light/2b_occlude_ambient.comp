@@ -17,10 +17,8 @@ layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params
 layout(binding = BIND_LIGHT, scalar) uniform Light { LightParams at; } light;
 #define CLIP_PARAMS light.at
 #include "shaders/edges/edge_record.glsl"
-vec4 keep_plane(uint i) { return light.at.clip_keep[i]; }
-vec4 remove_plane(uint i) { return light.at.clip_remove[i]; }
-#include "engine/geometry/surface_point.glsl"
 #include "shaders/light/extinction.glsl"
+#include "engine/geometry/surface_point.glsl"
 #include "footprints/in_float.glsl"
 #include "engine/geometry/light_ray.glsl"
 

@@ -29,8 +29,6 @@ ivec3 dims;
 #include "shaders/common/labels.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
-float lower_end(uint material) { return params.scene.iso[material - 1u]; }
-float upper_end(uint material) { return params.scene.iso[material]; }
 #include "shaders/drivers/if_any.glsl"
 #include "engine/geometry/values_around.glsl"
 #include "engine/geometry/classified_value.glsl"

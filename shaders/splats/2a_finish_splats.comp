@@ -33,8 +33,6 @@ vec3 field_gradient(ivec3 p) {
     return voxel_gradient(p);
 }
 
-float lower_end(uint material) { return params.scene.iso[material - 1u]; }
-float upper_end(uint material) { return params.scene.iso[material]; }
 ivec3 volume_dims() { return params.scene.volume_dims; }
 float noise() { return params.scene.noise; }
 #include "shaders/splats/crease_record.glsl"
