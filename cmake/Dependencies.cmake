@@ -55,9 +55,9 @@ add_library(edgesplat_imgui UNKNOWN IMPORTED)
 set_target_properties(edgesplat_imgui PROPERTIES IMPORTED_LOCATION ${IMGUI_LIBRARY}
     INTERFACE_INCLUDE_DIRECTORIES "${IMGUI_INCLUDE_DIRS}" INTERFACE_LINK_LIBRARIES "stb;Vulkan::Vulkan")
 
-# MPI divides one picture among many processes; only the program edgesplat uses it.
+# MPI divides a movie's frames among many processes; only the program edgesplat uses it.
 find_package(MPI QUIET COMPONENTS C)
-option(EDGESPLAT_MPI "Divide pictures among the processes of mpirun" ${MPI_C_FOUND})
+option(EDGESPLAT_MPI "Divide a movie's frames among the processes of mpirun" ${MPI_C_FOUND})
 if(EDGESPLAT_MPI)
     find_package(MPI REQUIRED COMPONENTS C)
 endif()

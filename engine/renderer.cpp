@@ -88,10 +88,6 @@ void Renderer::count_fragments(bool on) {
     state_->session.commands().count_draws(on);
 }
 
-void Renderer::divide_sheets(PartExchange* exchange) {
-    state_->options.exchange = exchange;
-}
-
 FrameForecast Renderer::forecast(const FrameRequest& request) {
     require_samples(*request.volume, "a forecast of the frame");
     const auto count = [&](const FrameRequest& part, const CollectionPlan& wanted) {
@@ -125,18 +121,9 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     validate(scene);
     validate(wanted);
     need_layers(state_->session.device(), scene, wanted);
-    if (state_->options.exchange && canonical_settings(wanted, scene).sheet_format != SheetFormat::Tiles)
-        fail("dividing the sheets between renderers needs --sheet-format tiles");
     if (scene.effects.smooth_outlines && canonical_settings(wanted, scene).sheet_format != SheetFormat::Tiles)
         fail("effects.smooth_outlines: sheets in layers do not store outlines, expected --sheet-format tiles");
-    if (scene.effects.smooth_outlines && state_->options.exchange)
-        fail("effects.smooth_outlines: it cannot be combined with a division of sheets, expected false");
-    if (!scene.added.empty() && state_->options.exchange)
-        fail("volumes: several volumes cannot be combined with a division of sheets, expected one");
-    // Votes about a surface cannot be divided between processes.
-    Settings drawn = wanted;
-    if (state_->options.exchange) drawn.opaque = OpaqueMatter::Kernels;
-    return draw_again_if_lost([&] { return render_once(scene, camera, drawn, width, height, aovs); });
+    return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });
 }
 
 RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, const Settings& wanted, int width,
@@ -180,7 +167,6 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     const auto start = Clock::now();
     std::vector<PassTime> times;
     SampleMean mean(size);
-    drawer.begin_share();
     for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
         self.options.throw_if_interrupted();
         draw(shader::PAYLOAD_COLOR, offset);
@@ -189,7 +175,6 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
         if (scene.effects.samples > 1) mean.add(floats(drawer.pixels()));
     }
     stats.frame_milliseconds = milliseconds_since(start);
-    if (self.options.exchange) stats.share = drawer.share();
     stats.passes.insert(stats.passes.end(), times.begin(), times.end());
     stats.splats_drawn = drawer.splats_drawn();
     stats.sheets = drawer.drawn().params.sheet_count;

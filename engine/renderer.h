@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "engine/device_info.h"
-#include "engine/distribute/part_exchange.h"
 #include "engine/error.h"
 #include "engine/image/image.h"
 #include "engine/scene/frame_request.h"
@@ -63,7 +62,6 @@ struct RenderStats {
     std::optional<DrawCounts> draw_counts;
     /// Set after Renderer::count_fragments. Mean share of the picture that the rectangle of a sheet group covers.
     std::optional<double> dirty_share;
-    std::optional<SheetShare> share;  ///< after Renderer::divide_sheets
     std::uint64_t validation_messages = 0;
 };
 
@@ -120,10 +118,6 @@ class Renderer {
     /// Enables RenderStats::draw_counts (if the device can count) and dirty_share for the following pictures. Counting
     /// makes frames slower.
     void count_fragments(bool on);
-
-    /// Shares the sheets of the following pictures with the other renderers of the exchange. Only the renderer of the
-    /// first part returns a usable picture. Null: draws all sheets itself.
-    void divide_sheets(PartExchange* exchange);
 
     /// Renders one frame of `width` x `height` pixels (1..16384 each). View-independent work is repeated only when the
     /// volume, the scene's materials or the edge settings have changed.

@@ -42,7 +42,6 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
                           {"name", pass.name},
                           {"reason", pass.reason},
                           {"variants", variants},
-                          {"estimated_ms", pass.estimated_milliseconds},
                           {"measured_ms", number_or_null(pass.measured_milliseconds)}});
     }
     for (const auto& r : d.resources) {
@@ -76,7 +75,6 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
             {"sheets", d.sheets},
             {"sheet_groups", d.sheet_groups},
             {"total_bytes", d.total_bytes()},
-            {"estimate", d.estimate},
             {"effects", effects},
             {"passes", passes},
             {"resources", resources},

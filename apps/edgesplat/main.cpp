@@ -90,8 +90,8 @@ void delay_other_ranks() {
 /// Refuses several ranks for a command that does not divide its work.
 void refuse_ranks(const CLI::App& command) {
     const std::string& name = command.get_name();
-    if (ranks::count() > 1 && name != "render" && name != "movie")
-        edgesplat::fail("{} does not divide its work among ranks; run it without mpirun", name);
+    if (ranks::count() > 1 && name != "movie")
+        edgesplat::fail("{} does not divide its work among ranks, expected movie; run it without mpirun", name);
 }
 
 int run(int argc, char** argv) {

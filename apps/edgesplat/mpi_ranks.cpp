@@ -6,7 +6,6 @@
 #include <unistd.h>
 #include <cstdio>
 
-#include "apps/edgesplat/mpi_exchange.h"
 #include "apps/edgesplat/mpi_launcher.h"
 
 namespace ranks {
@@ -58,24 +57,11 @@ bool any(bool here) {
 }
 
 void share_bytes(std::span<std::byte> bytes) {
-    if (all > 1) MPI_Bcast(bytes.data(), mpi_count(bytes.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
-}
-
-std::vector<std::byte> gather_bytes(std::span<const std::byte> bytes) {
-    if (all == 1) return {bytes.begin(), bytes.end()};
-    std::vector<std::byte> gathered(first() ? bytes.size() * static_cast<std::size_t>(all) : 0);
-    const int count = mpi_count(bytes.size());
-    MPI_Gather(bytes.data(), count, MPI_BYTE, gathered.data(), count, MPI_BYTE, 0, MPI_COMM_WORLD);
-    return gathered;
+    if (all > 1) MPI_Bcast(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
 std::string label() {
     return all > 1 ? fmt::format("rank {} of {}: ", own_index, all) : "";
-}
-
-std::unique_ptr<edgesplat::PartExchange> part_exchange() {
-    if (all == 1) return nullptr;
-    return std::make_unique<MpiExchange>(edgesplat::SheetPart{own_index, all});
 }
 
 }  // namespace ranks

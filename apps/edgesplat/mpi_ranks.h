@@ -2,15 +2,10 @@
 // mpirun there is one rank, and MPI is not used.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
-
-#include "engine/distribute/part_exchange.h"
 
 namespace ranks {
 
@@ -34,9 +29,6 @@ void wait();
 bool any(bool here);
 /// Overwrites the bytes with those of rank 0.
 void share_bytes(std::span<std::byte> bytes);
-/// Rank 0 receives the bytes of all ranks in order; the result of other ranks is unspecified. Every rank passes the
-/// same number of bytes.
-std::vector<std::byte> gather_bytes(std::span<const std::byte> bytes);
 
 template <typename T>
 void share(std::span<T> values) {
@@ -44,19 +36,7 @@ void share(std::span<T> values) {
     share_bytes(std::as_writable_bytes(values));
 }
 
-template <typename T>
-std::vector<T> gather(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const std::vector<std::byte> bytes = gather_bytes(std::as_bytes(std::span(&value, 1)));
-    std::vector<T> values(bytes.size() / sizeof(T));
-    std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(values)).begin());
-    return values;
-}
-
 /// Prefix of messages, "rank 2 of 4: "; empty if there is one rank.
 std::string label();
-
-/// Exchange for one picture that all ranks draw together; null if there is one rank.
-std::unique_ptr<edgesplat::PartExchange> part_exchange();
 
 }  // namespace ranks

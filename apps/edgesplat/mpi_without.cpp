@@ -33,16 +33,8 @@ bool any(bool here) {
 
 void share_bytes(std::span<std::byte> /*bytes*/) {}
 
-std::vector<std::byte> gather_bytes(std::span<const std::byte> bytes) {
-    return {bytes.begin(), bytes.end()};
-}
-
 std::string label() {
     return {};
-}
-
-std::unique_ptr<edgesplat::PartExchange> part_exchange() {
-    return nullptr;
 }
 
 }  // namespace ranks

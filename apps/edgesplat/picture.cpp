@@ -8,7 +8,6 @@
 
 #include "apps/edgesplat/cpu_renderers.h"
 #include "apps/edgesplat/max_error_option.h"
-#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/volume_options.h"
@@ -38,11 +37,6 @@ void check(const PictureRequest& request) {
         edgesplat::fail("--explain needs --renderer splat");
     if (output.renderer == edgesplat::RendererKind::Raycast && !output.aovs.empty())
         edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
-    if (ranks::count() > 1 && output.compare_raycast)
-        edgesplat::fail("--compare raycast does not draw sheets, which ranks divide; run it without mpirun");
-    if (ranks::count() > 1 && output.renderer != edgesplat::RendererKind::Splat)
-        edgesplat::fail("--renderer {} does not draw sheets, which ranks divide; run it without mpirun",
-                        name_of(output.renderer));
     check_cpu_request(request.document);
     if (request.document.quality.max_error && output.renderer != edgesplat::RendererKind::Splat)
         edgesplat::fail("--max-error needs --renderer splat");
@@ -67,34 +61,29 @@ edgesplat::Volume load(PictureRequest& request) {
     return volume;
 }
 
-/// Renders the requested frames: for comparisons the plain one first, then the ray caster's. Of several ranks, only the
-/// first receives the pictures.
+/// Renders the requested frames: for comparisons the plain one first, then the ray caster's.
 std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
-                                         edgesplat::Renderer& renderer, const edgesplat::Volume& volume,
-                                         const edgesplat::Scene& scene, const edgesplat::Camera& camera, bool quiet) {
+                                         edgesplat::Renderer& renderer, const edgesplat::Scene& scene,
+                                         const edgesplat::Camera& camera, bool quiet) {
     std::vector<RenderedFrame> frames;
     if (output.compare_plain) {
         edgesplat::Settings plain = settings;
         plain.edges = edgesplat::EdgeEstimator::Off;
         frames.push_back({"plain", plain, {}});
     }
-    if (output.compare_raycast) frames.push_back({"raycast", settings, {}, {}, true});
+    if (output.compare_raycast) frames.push_back({"raycast", settings, {}, true});
     const bool edges = settings.edges != edgesplat::EdgeEstimator::Off;
     frames.push_back({edges ? "edges" : "plain", settings, {}});
     const edgesplat::AovRequest aovs = edgesplat::aov_request(output.aovs);
     const glm::ivec2& size = output.size;
-    const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
-    renderer.divide_sheets(exchange.get());
     for (RenderedFrame& frame : frames) {
         ProgressLine line(quiet);
         renderer.set_progress([&line](double share) { line.update(share, "finding surfaces"); });
         frame.result = frame.rays || output.renderer == edgesplat::RendererKind::Raycast
                            ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
                            : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
-        frame.ranks = gather_reports(frame.result.stats, volume);
     }
     renderer.set_progress({});
-    renderer.divide_sheets(nullptr);
     return frames;
 }
 
@@ -191,10 +180,8 @@ void make_picture(PictureRequest request) {
         renderer.set_memory_budget(request.explain.budget_bytes());
         renderer.set_volume(volume);
         const auto& max_error = request.document.quality.max_error;
-        if (ranks::first())
-            choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
-        ranks::share(std::span(&settings, 1));
-        frames = render_frames(output, settings, renderer, *volume, scene, camera, request.quiet);
+        choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
+        frames = render_frames(output, settings, renderer, scene, camera, request.quiet);
         if (request.explain.explain) {
             const auto plan = edgesplat::describe_frame(planned, renderer, &frames.back().result.stats);
             fmt::print("{}\n", edgesplat::to_text(plan));
@@ -202,11 +189,7 @@ void make_picture(PictureRequest request) {
         }
         const edgesplat::DeviceInfo& device = renderer.device();
         description.device = fmt::format("{}, {} {}", device.name, device.driver, device.driver_version);
-        if (ranks::count() > 1) description.device += fmt::format(", {} ranks", ranks::count());
         validation_messages = renderer.validation_messages();
-        for (const RankReport& report : frames.back().ranks)
-            if (&report != &frames.back().ranks.front()) validation_messages += report.validation_messages;
-        if (!ranks::first()) return;
     }
     description.scene_text = scene_of_picture(request, *volume, scene, camera, settings);
 
@@ -229,8 +212,8 @@ void make_picture(PictureRequest request) {
         fmt::print("{}: {}, {:.1f} ms on {}\n", output.file, name_of(output.renderer), stats.frame_milliseconds,
                    stats.device.name);
     else if (!request.quiet)
-        fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}{}\n", output.file, stats.splats_drawn, stats.sheets,
-                   stats.frame_milliseconds, stats.device.name, to_text(frames.back().ranks));
+        fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}\n", output.file, stats.splats_drawn, stats.sheets,
+                   stats.frame_milliseconds, stats.device.name);
     if (stats.level > stats.wanted_level) {
         fmt::print(stderr,
                    "edgesplat: warning: {}: drawn at level {}, with voxels {} times as wide: the splats of level {} do "

@@ -11,7 +11,6 @@
 #include "apps/edgesplat/effects_options.h"
 #include "apps/edgesplat/explain_option.h"
 #include "apps/edgesplat/max_error_option.h"
-#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/picture.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/scene_options.h"
@@ -40,7 +39,7 @@ void run(const RenderCommand& command, const std::string& command_line) {
                            .explain = command.explain,
                            .json = command.json,
                            .command_line = command_line,
-                           .quiet = command.quiet || !ranks::first()};
+                           .quiet = command.quiet};
     read_sources(command.sources, request.document, request.folders);
     apply(command.volume, request.document.volume);
     command.edits.apply(request.document);

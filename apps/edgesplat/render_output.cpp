@@ -67,7 +67,6 @@ ordered_json to_json(const RenderedFrame& frame) {
                          {"submissions", stats.submissions},
                          {"device_bytes", stats.device_bytes},
                          {"validation_messages", stats.validation_messages}};
-    if (!frame.ranks.empty()) json["ranks"] = to_json(frame.ranks);
     return json;
 }
 

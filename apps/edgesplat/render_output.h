@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/edgesplat/mpi_report.h"
 #include "engine/image/image_file.h"
 #include "engine/renderer.h"
 
@@ -16,8 +15,7 @@ struct RenderedFrame {
     std::string name;  ///< "plain", "raycast" or "edges"
     edgesplat::Settings settings;
     edgesplat::RenderResult result;
-    std::vector<RankReport> ranks{};  ///< empty unless the sheets were divided
-    bool rays = false;                ///< ray cast, not splatted
+    bool rays = false;  ///< ray cast, not splatted
 };
 
 /// Description of the run for statistics and metadata.

@@ -99,7 +99,7 @@ bool runs(const Effect& effect, const std::vector<PassDescription>& passes) {
 }
 
 /// Lists the effects that are off, with what each would add.
-std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device,
+std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast,
                               const std::vector<std::pair<const Effect*, std::string>>& on) {
     std::vector<LeftOut> rows;
     for (const Effect& effect : effect_table()) {
@@ -116,7 +116,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
                     return collection == forecast.collection ? forecast.splats : count_splats_of(part, collection);
                 };
                 const FrameForecast other = forecast_frame(with, count, *forecast.profile);
-                if (!runs(effect, described_passes(with, other, device))) {
+                if (!runs(effect, described_passes(with, other))) {
                     row.obstacle = "device profile " + std::string(forecast.profile->name) + " does not use it";
                     rows.push_back(std::move(row));
                     continue;
@@ -152,12 +152,11 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     out.splats_from = forecast.splats.from == SplatCount::From::Frame ? "as collected" : "counted on the host";
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;
-    out.passes = described_passes(request, forecast, device);
+    out.passes = described_passes(request, forecast);
     // Remove effects that the request enables but this device does not use.
     std::erase_if(effects, [&](const auto& entry) { return !runs(*entry.first, out.passes); });
     for (PassDescription& pass : out.passes)
         pass.reason = reason_for(effects, pass.name, &Effect::passes);
-    out.estimate = estimate_basis(device);
     for (const PlannedResource& resource : forecast.resources) {
         const auto same = std::ranges::find_if(out.resources, [&](const ResourceDescription& r) {
             return r.name == resource.text.name && r.held == name_of(resource.held);
@@ -186,7 +185,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
             out.record.push_back({std::string(field.name), fmt::format("{}: {}", effect->name, reason), field.bytes});
         out.active_effects.emplace_back(std::string(effect->name), reason);
     }
-    out.left_out = left_out(request, forecast, device, effects);
+    out.left_out = left_out(request, forecast, effects);
     return out;
 }
 

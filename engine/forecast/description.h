@@ -13,12 +13,11 @@ namespace edgesplat {
 
 /// A pass of a draw; all sheet groups together are one entry.
 struct PassDescription {
-    std::string draw;    ///< "setup", "colour", or the extra output that this draw is for
-    std::string name;    ///< stem, e.g. "5_draw_splats"
-    std::string reason;  ///< effects that need the pass
-    std::vector<gpu::PipelineVariant> pipelines;
-    double estimated_milliseconds = 0;  ///< on the kind of device described; see `estimate`
-    std::optional<double> measured_milliseconds;
+    std::string draw;      ///< "setup", "colour", or the extra output that this draw is for
+    std::string name;      ///< stem, e.g. "5_draw_splats"
+    std::string reason{};  ///< effects that need the pass
+    std::vector<gpu::PipelineVariant> pipelines{};
+    std::optional<double> measured_milliseconds{};
     bool depends = false;  ///< may be skipped once splats are known; then removed from a measured frame
 };
 
@@ -62,7 +61,6 @@ struct FrameDescription {
     std::vector<RecordDescription> record;
     std::vector<std::pair<std::string, std::string>> active_effects;  ///< (effect, reason)
     std::vector<LeftOut> left_out;
-    std::string estimate;  ///< basis of the estimated times
 
     /// Peak memory: permanent resources plus the largest sum of temporary ones of the same lifetime, bytes.
     std::uint64_t total_bytes() const;
@@ -74,7 +72,7 @@ struct FittingChange {
     FrameRequest request;
 };
 
-/// Describes a frame without a device: bytes from the formats, times of a software device. `profile`: as in
+/// Describes a frame without a device: bytes from the formats. `profile`: as in
 /// DeviceChoice. Throws Error for a request that cannot be drawn.
 FrameDescription describe_frame(const FrameRequest& request, const std::string& profile = {});
 

@@ -59,13 +59,13 @@ std::string to_text(const FrameDescription& d) {
     const bool measured =
         std::ranges::any_of(d.passes, [](const auto& p) { return p.measured_milliseconds.has_value(); });
     text += "\npasses\n";
-    Table passes({false, false, true, true, false});
-    passes.row({"for", "pass", "ms estimated", measured ? "ms measured" : "", "reason"});
+    Table passes({false, false, true, false});
+    passes.row({"for", "pass", measured ? "ms" : "", "reason"});
     for (const PassDescription& pass : d.passes) {
-        passes.row({pass.draw, pass.name, fmt::format("{:.2f}", pass.estimated_milliseconds),
+        passes.row({pass.draw, pass.name,
                     pass.measured_milliseconds ? fmt::format("{:.2f}", *pass.measured_milliseconds) : "", pass.reason});
     }
-    text += passes.text() + "  " + d.estimate + "\n\npipeline variants\n";
+    text += passes.text() + "\npipeline variants\n";
     for (const PassDescription& pass : d.passes)
         for (const gpu::PipelineVariant& pipeline : pass.pipelines)
             text += fmt::format("  {}: {}\n", pass.draw, text_of(pipeline));

@@ -23,18 +23,15 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
     commands.run([&] {
         commands.fill(targets.counters, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
-        commands.span("4_sort_sheets",
-                      [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
+        commands.pass(passes::select_footprints(p.slot_count, plan.variant));
+        commands.pass(passes::sort_sheets(commands.profile(), plan.variant, p, plan.sort_segments));
         for (std::uint32_t group = 0; group < p.group_count; ++group) {
             commands.span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             commands.span("6_composite_sheet",
                           [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
         }
-        commands.span("7_resolve", [&] {
-            passes::resolve(commands, plan.variant, p.size, plan.gradient);
-            commands.to_host(targets.output);
-        });
+        commands.pass(passes::resolve(plan.variant, p.size, plan.gradient));
+        commands.to_host(targets.output);
     });
     return commands.span_times();
 }
@@ -42,22 +39,20 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
 namespace {
 
 void merge(gpu::Commands& commands, const FramePlan& plan, passes::Merge how) {
-    commands.span("6_merge_surfaces", [&] { passes::merge_surfaces(commands, how, plan.params.size); });
+    commands.pass(passes::merge_surfaces(how, plan.params.size));
 }
 
 /// Pass 7 of a tiled picture, after the surfaces behind it are joined.
 void end_picture(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
     const glm::ivec2& size = plan.params.size;
-    if (plan.variant.mixed) commands.span("6_join_surfaces", [&] { passes::join_surfaces(commands, size); });
-    commands.span("7_resolve", [&] {
-        // A pixel on an outline also blends in its neighbour's colour before this pass.
-        if (plan.variant.outlines) {
-            commands.copy(targets.output, targets.tile_sheets, {{0, 0, picture_bytes(plan)}});
-            commands.barrier();
-        }
-        passes::resolve(commands, plan.variant, size, plan.gradient);
-        commands.to_host(targets.output);
-    });
+    commands.pass(passes::join_surfaces(plan.variant, size));
+    // A pixel on an outline also blends in its neighbour's colour before pass 7.
+    if (plan.variant.outlines) {
+        commands.copy(targets.output, targets.tile_sheets, {{0, 0, picture_bytes(plan)}});
+        commands.barrier();
+    }
+    commands.pass(passes::resolve(plan.variant, size, plan.gradient));
+    commands.to_host(targets.output);
 }
 
 }  // namespace
@@ -91,12 +86,9 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
     if (!continues && plan.variant.several && !plan.variant.surfaces) merge(commands, plan, passes::Merge::Take);
-    if (!continues && plan.variant.begins)
-        commands.span("5_begin_surfaces", [&] { passes::begin_surfaces(commands, plan.variant, plan.params.size); });
-    commands.span("3_select_footprints",
-                  [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });
-    commands.span("4_sort_sheets",
-                  [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
+    if (!continues) commands.pass(passes::begin_surfaces(plan.variant, plan.params.size));
+    commands.pass(passes::select_footprints(plan.params.slot_count, plan.variant));
+    commands.pass(passes::sort_sheets(commands.profile(), plan.variant, plan.params, plan.sort_segments));
     for (const gpu::Buffer* seen : {&targets.sheet_pairs, &targets.sheet_starts})
         commands.to_host(*seen);
 }
@@ -125,10 +117,10 @@ void TilePasses::sort(std::uint32_t chunk) {
         const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
         const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
         commands_.fill(targets_.tile_marks, ~0U, first * sizeof(std::uint32_t), room * sizeof(std::uint32_t));
-        commands_.barrier();
     }
-    commands_.span("4_sort_tiles",
-                   [&] { passes::sort_tiles(commands_, targets_.tile_counters, plan_.params, chunk, steps); });
+    commands_.fill(targets_.tile_counters, 0);
+    commands_.barrier();
+    commands_.pass(passes::sort_tiles(*how_.profile, plan_.params, chunk, steps));
 }
 
 void TilePasses::prepare(std::uint32_t chunk) {
@@ -137,8 +129,7 @@ void TilePasses::prepare(std::uint32_t chunk) {
     // Places are reused in turn: if the order has more entries than places, earlier chunks are overwritten.
     if (parts_.back().y - parts_.front().x > places) std::fill(prepared_.begin(), prepared_.end(), false);
     prepared_[chunk] = true;
-    commands_.span("4_prepare_splats",
-                   [&] { passes::prepare_splats(commands_, plan_.variant, chunk, entries(chunk)); });
+    commands_.pass(passes::prepare_splats(plan_.variant, chunk, entries(chunk)));
 }
 
 void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t tiles, std::uint64_t groups,
@@ -150,22 +141,17 @@ void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t til
                                  .round = round,
                                  .tile_groups = tile_groups(how_, step),
                                  .first_pixels = how_.refined && step == shader::REFINE_STEP};
-    commands_.span("4_mark_pixels", [&] { passes::mark_pixels(commands_, plan_.variant, of_chunk, tiles, round); });
-    if (plan_.variant.traced)
-        commands_.span("5_trace_faces", [&] { passes::trace_faces(commands_, plan_.variant, of_chunk, tiles, part); });
-    if (plan_.variant.surfaces)
-        commands_.span("5_draw_surfaces", [&] { passes::draw_surfaces(commands_, plan_.variant, of_chunk, part); });
-    else
-        commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
+    commands_.pass(passes::mark_pixels(plan_.variant, of_chunk, tiles, round));
+    commands_.pass(passes::trace_faces(plan_.variant, of_chunk, tiles, part));
+    commands_.pass(passes::draw_tiles(plan_.variant, of_chunk, part));
 }
 
 void TilePasses::shade(std::uint32_t step) {
-    if (!plan_.variant.surfaces) return;
     const passes::TileRound all{.groups = tile_count(plan_) * tile_groups(how_, step),
                                 .round = how_.part ? 1U : 0U,
                                 .tile_groups = tile_groups(how_, step),
                                 .first_pixels = how_.refined && step == shader::REFINE_STEP};
-    commands_.span("5_shade_surfaces", [&] { passes::shade_surfaces(commands_, plan_.variant, how_, all); });
+    commands_.pass(passes::shade_surfaces(plan_.variant, how_, all));
 }
 
 void TilePasses::copy_saturated_to_host() {
@@ -178,8 +164,7 @@ void TilePasses::copy_saturated_to_host() {
 void TilePasses::finish(std::uint32_t step) {
     shade(step);
     if (step > 1) {
-        commands_.span("5_refine_pixels",
-                       [&] { passes::refine_pixels(commands_, plan_.variant, tile_count(plan_), step); });
+        commands_.pass(passes::refine_pixels(plan_.variant, tile_count(plan_), step));
         copy_saturated_to_host();
     } else if (plan_.variant.mixed && plan_.variant.surfaces) {
         if (plan_.variant.several && !how_.part)

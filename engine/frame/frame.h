@@ -3,9 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "engine/compositors/tiles/lists.h"
-#include "engine/distribute/parts.h"
 
 namespace edgesplat {
 
@@ -16,9 +16,18 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
 /// continues behind sheets that are drawn already, so that the picture is kept.
 void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool continues);
 
-/// Runs sort_splats(), waits and returns the chunks of the division's sheets. The times are left in `commands`.
+/// Sheets to draw, numbered from the eye on, half open.
+struct SheetRange {
+    int begin = 0, end = std::numeric_limits<int>::max();
+    bool continues = false;  ///< continues behind sheets that are drawn already
+
+    /// The sheets, numbered from the picture's first sheet on.
+    glm::uvec2 in_picture(const shader::FrameParams& params) const;
+};
+
+/// Runs sort_splats(), waits and returns the chunks of the range's sheets. The times are left in `commands`.
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const Division& division = {});
+                  const SheetRange& range = {});
 
 /// Draws that frame after the sort. `targets.tile_entries` must have room for the largest chunk's pairs,
 /// `targets.chunks` the chunks. If the profile has rounds, the host waits after each chunk, and with `between` after
@@ -35,11 +44,6 @@ std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& pla
 /// Ends a picture of several volumes without kernels: composites their surfaces and runs pass 7. `plan`: of the part
 /// that was drawn last. Runs and waits.
 std::vector<PassTime> join_volumes(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
-
-/// One step of `draw_tiles` without the passes that follow a step. A refined picture: the pixels of `step`, first at
-/// multiples of REFINE_STEP, then those that 5_refine_pixels lists. Any other picture: all pixels, step 1.
-std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                std::uint32_t chunks, passes::TileDraw how, std::uint32_t step);
 
 /// Records the passes of a tiled frame that follow the choice of chunks into the current run.
 class TilePasses {

@@ -21,10 +21,8 @@ FramePlan PictureDrawer::plan(const CollectedSplats& list, const Scene& scene, c
                               const Settings& settings, const glm::ivec2& size, std::uint32_t payload) const {
     const Volume& volume = *list.volume.volume();
     const SplatLists& splats = list.splats.lists();
-    // All parts of a divided picture must agree, whatever their devices.
-    const bool refines = session_->profile().refines || options_->exchange != nullptr;
-    FramePlan out =
-        plan_frame(volume, scene, camera, settings, size, payload, splats.extent(), kernel_reach(settings), refines);
+    FramePlan out = plan_frame(volume, scene, camera, settings, size, payload, splats.extent(), kernel_reach(settings),
+                               session_->profile().refines);
     out.params.chunk_slots = std::min(expected_chunks_[splats.surfaces ? 1 : 0], out.params.sheet_count);
     if (culling_.bricks) cull_bricks(out, splats.bricks, {volume.geometry, camera, size, out.variant.antialias});
     return out;
@@ -90,9 +88,7 @@ void PictureDrawer::draw_planned(const CollectedSplats& list) {
         times_ = draw_sheets(commands, plan_, targets_.resources());
         return;
     }
-    const passes::TileDraw how{
-        .profile = &session_->profile(), .count = options_->counting, .part = options_->exchange != nullptr};
-    if (options_->exchange) return draw_part(how);
+    const passes::TileDraw how{.profile = &session_->profile(), .count = options_->counting};
     times_.clear();
     if (draw_front_first(list, how)) return;
     // Expect as many chunks as the last picture had: an empty one costs as much as waiting once. 0 if the device could
@@ -126,7 +122,7 @@ bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::
     draw_bricks(plan_, splats.bricks, divided->front);
     plan_.params.sheets_drawn = static_cast<std::uint32_t>(std::max(divided->sheet - plan_.params.sheet_base, 0));
     provide_targets(list);
-    Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, divided->sheet)});
+    Chunks chunks = sort_frame(commands, plan_, targets, {.end = divided->sheet});
     times_ = commands.span_times();
     if (whole.refined && should_refine(chunks)) {
         plan_ = whole;
@@ -152,8 +148,7 @@ bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::
                          [&](std::uint32_t number) { return open.may_show(splats.bricks.bricks()[number].box); });
     draw_bricks(plan_, splats.bricks, shown);
     provide_targets(list);
-    chunks = sort_frame(commands, plan_, targets,
-                        {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .continues = true});
+    chunks = sort_frame(commands, plan_, targets, {.begin = divided->sheet, .continues = true});
     add_times(times_, commands.span_times());
     draw_chunks(chunks, how);
     // Statistics of the picture are of both parts.
@@ -183,7 +178,7 @@ OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest&
     level.splats.bind(level.volume);
     targets_.provide(plan_, level.splats.lists());
     const TargetResources& targets = targets_.resources();
-    const Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, sheet)});
+    const Chunks chunks = sort_frame(commands, plan_, targets, {.end = sheet});
     targets_.provide_chunks(plan_, chunks);
     draw_tiles(commands, plan_, targets, static_cast<std::uint32_t>(chunks.parts.size()),
                {.profile = &session_->profile(), .part = true});

@@ -42,8 +42,6 @@ class PictureDrawer {
         : session_(&session), options_(&options), targets_(session) {}
 
     void set_culling(const Culling& culling) { culling_ = culling; }
-    /// For a picture drawn in parts from blocks: draws only these sheets, numbered from the eye on.
-    void set_slab(std::optional<glm::ivec2> slab) { slab_ = slab; }
 
     FramePlan plan(const CollectedSplats& splats, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
@@ -66,9 +64,6 @@ class PictureDrawer {
         return drawn_before_ + targets_.resources().drawn.mapped<std::uint32_t>(1)[0];
     }
     PictureCounts counts() const;
-    /// Sums over all pictures since begin_share().
-    const SheetShare& share() const { return share_; }
-    void begin_share() { share_ = {}; }
 
     Targets& targets() { return targets_; }
 
@@ -84,23 +79,10 @@ class PictureDrawer {
 
     void check_picture(const CollectedSplats& list);
 
-    /// Draws this process's part of a tiled picture, as options_->exchange assigns it. The first part gets the whole
-    /// picture in its targets.
-    void draw_part(passes::TileDraw how);
-    /// Whether the whole picture is refined, decided from the chunks of all parts. `own`: this part's chunks.
-    bool parts_refine(const Chunks& own);
-    /// Draws this part's pixels of a step; the first part returns the composited ones.
-    std::vector<glm::vec4> draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
-                                          std::vector<bool>& reached);
-    /// After a step: the first part interpolates pixels and tells all parts which pixels to draw next.
-    /// `reached`: tiles that the parts in front leave unsaturated.
-    void share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole);
-
     DeviceSession* session_;
     const RenderOptions* options_;
     Targets targets_;
     Culling culling_;
-    std::optional<glm::ivec2> slab_;
     FramePlan plan_;
     std::vector<FramePlan> beside_;  ///< the plans of all parts of the picture, if it has several
     std::uint64_t examined_ = 0;
@@ -109,7 +91,6 @@ class PictureDrawer {
     /// expected number of chunks of the next picture, of kernels and of surface splats; 0: unknown
     std::array<std::uint32_t, 2> expected_chunks_{};
     std::vector<PassTime> times_;
-    SheetShare share_;
 };
 
 }  // namespace edgesplat

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include "engine/distribute/part_exchange.h"
 #include "engine/error.h"
 
 namespace edgesplat {
@@ -18,7 +17,6 @@ struct RenderOptions {
     bool counting = false;                                      ///< Renderer::count_fragments
     bool check_numbers = false;                                 ///< DeviceChoice::check_numbers
     std::filesystem::path kept_splats;                          ///< folder of DeviceChoice::keep_splats; empty: none
-    PartExchange* exchange = nullptr;                           ///< Renderer::divide_sheets
 
     /// Throws Interrupted if an interruption is requested.
     void throw_if_interrupted() const {

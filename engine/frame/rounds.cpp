@@ -8,38 +8,33 @@
 namespace edgesplat {
 namespace {
 
-/// Refinement steps of a picture from `first` to `last`, each half of the one before.
-struct Steps {
-    std::uint32_t first = 1, last = 1;
-    bool finish = true;  ///< also run the passes that follow a step's pixels
-};
-
-void record_steps(const FramePlan& plan, TilePasses& frame, const Steps& steps) {
-    for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
+/// The refinement steps of a picture, each half of the one before.
+void record_steps(const FramePlan& plan, TilePasses& frame) {
+    const std::uint32_t first = first_step(plan);
+    for (std::uint32_t step = first; step > 0; step /= 2) {
         const std::uint64_t tiles = tile_count(plan);
         for (std::uint32_t chunk = 0; chunk < frame.chunk_count(); ++chunk) {
             // A single chunk's lists remain valid for all steps.
-            if (step == steps.first || frame.chunk_count() > 1) frame.sort(chunk);
+            if (step == first || frame.chunk_count() > 1) frame.sort(chunk);
             frame.prepare(chunk);
             frame.draw(chunk, step, tiles, tiles * tile_groups(frame.how(), step), 0);
         }
-        if (steps.finish) frame.finish(step);
+        frame.finish(step);
     }
 }
 
 std::vector<PassTime> without_rounds(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                     TilePasses& frame, const Steps& steps) {
+                                     TilePasses& frame) {
     commands.run([&] {
         for (const gpu::Buffer* written : {&targets.chunks, &targets.tile_todo})
             commands.to_device(*written);
-        record_steps(plan, frame, steps);
-        if (!steps.finish) commands.to_host(targets.output);
+        record_steps(plan, frame);
     });
     return commands.span_times();
 }
 
 std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                TilePasses& frame, const Steps& steps, const std::function<void()>& between) {
+                                TilePasses& frame, const std::function<void()>& between) {
     std::vector<PassTime> times;
     const auto run = [&](const auto& body) {
         commands.run(body);
@@ -48,7 +43,7 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
     const bool refined = frame.how().refined;
     TileOrder order(plan, targets, passes::tile_group(frame.how()));
     KeptLists kept(plan, targets, frame.chunk_count());
-    for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
+    for (std::uint32_t step = first_step(plan); step > 0; step /= 2) {
         order.clear();
         const std::uint32_t count = order.has_pixels_to_draw() ? frame.chunk_count() : 0;
         for (std::uint32_t chunk = 0; chunk <= count; ++chunk) {
@@ -72,7 +67,7 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
             if (chunk == count) {
                 run([&] {
                     draw_rest();
-                    if (steps.finish) frame.finish(step);
+                    frame.finish(step);
                 });
                 break;
             }
@@ -103,23 +98,20 @@ void begin_counts(const TargetResources& targets) {
     std::ranges::fill(targets.drawn.mapped<std::uint32_t>(3).last(2), 0U);
 }
 
-std::vector<PassTime> draw(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                           std::uint32_t chunks, passes::TileDraw how, const Steps& steps,
-                           const std::function<void()>& between) {
-    if (steps.first == first_step(plan)) fill_todo(plan, targets);
-    begin_counts(targets);
-    TilePasses frame(commands, plan, targets, chunks, how);
-    return how.profile->rounds ? in_rounds(commands, plan, targets, frame, steps, between)
-                               : without_rounds(commands, plan, targets, frame, steps);
-}
-
 }  // namespace
 
+glm::uvec2 SheetRange::in_picture(const shader::FrameParams& params) const {
+    const auto counted = [&](int number) {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::int64_t>(std::int64_t{number} - params.sheet_base, 0, params.sheet_count));
+    };
+    return {counted(begin), counted(end)};
+}
+
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const Division& division) {
-    commands.run([&] { sort_splats(commands, plan, targets, division.continues); });
-    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), plan.params.sheet_base),
-                     commands.profile());
+                  const SheetRange& range) {
+    commands.run([&] { sort_splats(commands, plan, targets, range.continues); });
+    return chunks_of(plan, targets, range.in_picture(plan.params), commands.profile());
 }
 
 std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
@@ -132,8 +124,8 @@ std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& pla
     commands.run([&] {
         commands.to_device(targets.tile_todo);
         sort_splats(commands, plan, targets, false);
-        commands.span("4_sort_tiles", [&] { passes::plan_chunks(commands); });
-        record_steps(plan, frame, {});
+        commands.pass(passes::plan_chunks());
+        record_steps(plan, frame);
     });
     Chunks chunks = chunks_of(plan, targets, {0, p.sheet_count}, commands.profile());
     return fit(chunks, p, p.chunk_slots) ? std::optional(std::move(chunks)) : std::nullopt;
@@ -141,13 +133,11 @@ std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& pla
 
 std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between) {
-    return draw(commands, plan, targets, chunks, how, {.first = first_step(plan), .last = 1}, between);
-}
-
-std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                std::uint32_t chunks, passes::TileDraw how, std::uint32_t step) {
-    how.part = true;
-    return draw(commands, plan, targets, chunks, how, {.first = step, .last = step, .finish = false}, {});
+    fill_todo(plan, targets);
+    begin_counts(targets);
+    TilePasses frame(commands, plan, targets, chunks, how);
+    return how.profile->rounds ? in_rounds(commands, plan, targets, frame, between)
+                               : without_rounds(commands, plan, targets, frame);
 }
 
 }  // namespace edgesplat

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/gpu/shader.h"
 
 namespace edgesplat::gpu {
 namespace {
@@ -78,15 +79,34 @@ void Commands::bind_pipeline(vk::PipelineBindPoint point, vk::Pipeline pipeline,
         number);
 }
 
-void Commands::dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups) {
-    bind_pipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants), number);
-    buffer_.dispatch(groups.x, groups.y, groups.z);
+glm::uvec3 Commands::workgroups(const Dispatch& dispatch) const {
+    const auto folded = [&](std::uint64_t groups) {
+        const std::uint64_t all = std::max<std::uint64_t>(groups, 1);
+        const std::uint64_t rows = (all + most_groups_ - 1) / most_groups_;
+        return glm::uvec3((all + rows - 1) / rows, rows, 1);
+    };
+    if (const auto* groups = std::get_if<Workgroups>(&dispatch.size)) return folded(groups->count);
+    if (const auto* columns = std::get_if<Columns>(&dispatch.size)) return {columns->workgroups, 1, 1};
+    const glm::uvec3 local = local_size(dispatch.shader);
+    if (const auto* line = std::get_if<Invocations>(&dispatch.size))
+        return folded((line->count + local.x - 1) / local.x);
+    return (std::get<Grid>(dispatch.size).invocations + local - 1U) / local;
 }
 
-Groups Commands::groups_for(std::uint64_t count, std::uint32_t local) const {
-    const std::uint64_t groups = std::max<std::uint64_t>((count + local - 1) / local, 1);
-    const std::uint64_t rows = (groups + most_groups_ - 1) / most_groups_;
-    return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
+void Commands::dispatch(const Dispatch& dispatch) {
+    bind_pipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(dispatch.shader, dispatch.constants),
+                  dispatch.number);
+    const glm::uvec3 groups = workgroups(dispatch);
+    buffer_.dispatch(groups.x, groups.y, groups.z);
+    barrier();
+}
+
+void Commands::pass(const Pass& pass) {
+    if (pass.dispatches.empty()) return;
+    span(pass.name, [&] {
+        for (const Dispatch& each : pass.dispatches)
+            dispatch(each);
+    });
 }
 
 void Commands::barrier() {
@@ -107,10 +127,6 @@ void Commands::prepare(std::initializer_list<const GpuImage*> images) {
 
 void Commands::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes) {
     buffer_.fillBuffer(buffer.handle(), offset, bytes, value);
-}
-
-void Commands::update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values) {
-    buffer_.updateBuffer<std::uint32_t>(buffer.handle(), offset, values);
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, const std::vector<vk::BufferCopy>& parts) {

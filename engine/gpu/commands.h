@@ -10,16 +10,11 @@
 
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/descriptor_set.h"
+#include "engine/gpu/dispatch.h"
 #include "engine/gpu/image.h"
-#include "engine/gpu/pipelines.h"
 #include "shaders/shared/frame_params.h"
 
 namespace edgesplat::gpu {
-
-/// Number of workgroups of a dispatch along each axis.
-struct Groups {
-    std::uint32_t x = 1, y = 1, z = 1;
-};
 
 /// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: each pass depends on the
 /// whole of the one before, so finer barriers save nothing.
@@ -27,7 +22,7 @@ class Commands {
   public:
     /// Time limit of a run, ns: a software device may need minutes for a huge frame.
     static constexpr std::uint64_t kTimeout = 600'000'000'000;
-    /// Workgroups of a dispatch along an axis that every device allows.
+    /// Workgroups along an axis that every device allows; longer lines are folded.
     static constexpr std::uint32_t kMostGroups = 65535;
 
     Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
@@ -45,10 +40,11 @@ class Commands {
 
     /// The descriptor set of the following dispatches of this run; the default is the constructor's.
     void bind_compute_set(const DescriptorSet& set);
-    void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
-    /// Groups of `local` invocations for at least `count` invocations. More than kMostGroups are folded into rows along
-    /// y; the shader numbers them by shaders/common/groups.glsl.
-    Groups groups_for(std::uint64_t count, std::uint32_t local) const;
+    void dispatch(const Dispatch& dispatch);
+    /// Records the dispatches of a pass as a span of device time.
+    void pass(const Pass& pass);
+    /// Workgroups of a dispatch along each axis.
+    glm::uvec3 workgroups(const Dispatch& dispatch) const;
     /// Replaces kMostGroups: a test folds short dispatches, too.
     void fold_above(std::uint32_t groups) { most_groups_ = groups; }
     /// Makes all earlier writes visible to all later commands and to the host.
@@ -58,8 +54,6 @@ class Commands {
 
     /// Writes `value` to every word of `bytes` bytes from `offset` on.
     void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
-    /// Writes `values` at byte `offset`, at most 65536 bytes.
-    void update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values);
     void copy(const Buffer& from, const Buffer& to, const std::vector<vk::BufferCopy>& parts);
     void copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part);
     void copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 
@@ -17,5 +18,8 @@ std::span<const EmbeddedShader> embedded_shaders();
 
 /// The SPIR-V of a shader. Throws std::logic_error for a name that was not compiled in.
 std::span<const std::uint32_t> find_shader(std::string_view name);
+
+/// Invocations of a compute shader's workgroup along each axis. Throws std::logic_error if constants set them.
+glm::uvec3 local_size(std::string_view name);
 
 }  // namespace edgesplat::gpu

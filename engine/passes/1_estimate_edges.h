@@ -8,11 +8,7 @@
 namespace edgesplat::passes {
 
 /// Marks voxels that opaque voxels occlude from every side (three line sweeps). Clipped voxels are not opaque.
-void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, const ClipCount& clip);
-
-/// Specialization of 1a_mark_buried.comp for a sweep along one axis.
-gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, const ClipCount& clip);
-
+gpu::Pass mark_buried(const glm::ivec3& dims, std::uint32_t iso_count, const ClipCount& clip);
 /// The part of an image whose edges are estimated, voxels.
 struct EdgeRegion {
     glm::ivec3 dims{0};                    ///< size of the image
@@ -27,12 +23,9 @@ struct EstimateEdges {
     std::uint32_t iso_count = 1;
 };
 
-/// Specialization of 1b_estimate_edges.comp.
-gpu::Specialization estimate_constants(const EstimateEdges& in);
-
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
 /// per voxel of the core and of ESTIMATE_MARGIN voxels around it. With EdgeEstimator::Off it writes only normals, for
 /// lighting.
-void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
+gpu::Pass estimate_edges(const EdgeRegion& region, const EstimateEdges& in);
 
 }  // namespace edgesplat::passes

@@ -22,21 +22,17 @@ struct CollectSplats {
     std::uint32_t labels = 0;  ///< SPEC_LABELS: splats get the label of their voxel
 };
 
-/// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.
-gpu::Specialization collect_constants(const CollectSplats& in);
-gpu::Specialization finish_constants(const CollectSplats& in);
-
 /// Number of runs: invocations of the counting and the writing dispatch, one per slice of a brick
 /// (engine/culling/brick_runs.h).
 std::uint64_t collect_runs(const glm::ivec3& core_size);
 
 /// Writes the number of splats of each run to SceneParams::run_offsets; nothing for runs of bricks that are not listed.
-void count_splats(gpu::Commands& commands, const CollectSplats& in);
+gpu::Pass count_splats(const CollectSplats& in);
 
 /// Writes the records, brick by brick. Precondition: run_offsets is an exclusive prefix sum.
-void write_splats(gpu::Commands& commands, const CollectSplats& in);
+gpu::Pass write_splats(const CollectSplats& in);
 
 /// With an edge field: gives the SceneParams::list_count splats from list_first on their edges or faces.
-void finish_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
+gpu::Pass finish_splats(const CollectSplats& in, std::uint64_t count);
 
 }  // namespace edgesplat::passes

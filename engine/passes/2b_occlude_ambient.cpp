@@ -8,9 +8,8 @@ gpu::Specialization light_constants(const SplatLight& in) {
             {shader::SPEC_TRANSFER, in.transfer ? 1U : 0U}, {shader::SPEC_BESIDE, in.beside ? 1U : 0U}};
 }
 
-void occlude_ambient(gpu::Commands& commands, const SplatLight& in) {
-    commands.dispatch("2b_occlude_ambient.comp", light_constants(in), 0, commands.groups_for(in.splat_count, 64));
-    commands.barrier();
+gpu::Pass occlude_ambient(const SplatLight& in) {
+    return {"2b_occlude_ambient", {{"2b_occlude_ambient.comp", light_constants(in), gpu::Invocations{in.splat_count}}}};
 }
 
 }  // namespace edgesplat::passes

@@ -21,6 +21,6 @@ struct SplatLight {
 gpu::Specialization light_constants(const SplatLight& in);
 
 /// Reads the matter's volume, SceneParams and the splat list, writes LightParams::reach. View-independent.
-void occlude_ambient(gpu::Commands& commands, const SplatLight& in);
+gpu::Pass occlude_ambient(const SplatLight& in);
 
 }  // namespace edgesplat::passes

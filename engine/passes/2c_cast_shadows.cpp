@@ -2,9 +2,8 @@
 
 namespace edgesplat::passes {
 
-void cast_shadows(gpu::Commands& commands, const SplatLight& in) {
-    commands.dispatch("2c_cast_shadows.comp", light_constants(in), 0, commands.groups_for(in.splat_count, 64));
-    commands.barrier();
+gpu::Pass cast_shadows(const SplatLight& in) {
+    return {"2c_cast_shadows", {{"2c_cast_shadows.comp", light_constants(in), gpu::Invocations{in.splat_count}}}};
 }
 
 }  // namespace edgesplat::passes

@@ -8,6 +8,6 @@ namespace edgesplat::passes {
 
 /// Reads the volume, SceneParams and the splat list, writes half LightParams::channel of LightParams::reach with the
 /// share of LightParams::light. View-independent. Specialized like 2b_occlude_ambient.comp.
-void cast_shadows(gpu::Commands& commands, const SplatLight& in);
+gpu::Pass cast_shadows(const SplatLight& in);
 
 }  // namespace edgesplat::passes

@@ -7,12 +7,9 @@
 
 namespace edgesplat::passes {
 
-/// Specialization of 3_select_footprints.comp.
-gpu::Specialization select_constants(const DrawVariant& variant);
-
 /// FrameParams at `frame`: reads `splats`; writes `sheets` and, with a table, `footprints`; grows each `rect` of
 /// `groups`, which must be empty before. In sliced views a splat belongs to every sheet that its support touches.
 /// Splats that are clipped completely are culled.
-void select_footprints(gpu::Commands& commands, std::uint64_t slots, const DrawVariant& variant);
+gpu::Pass select_footprints(std::uint64_t slots, const DrawVariant& variant);
 
 }  // namespace edgesplat::passes

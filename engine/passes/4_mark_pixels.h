@@ -9,10 +9,5 @@ namespace edgesplat::passes {
 /// entries of `round` reach each pixel of a tile (each 4 x 2 pixels in refined pictures). `tiles`: with rounds the
 /// first tiles of `tile_order`, else all tiles. Saturated tiles get no marks. In refined pictures, words that are not
 /// all ones are marked already and stay; `tile_finest` is written, too.
-void mark_pixels(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
-                 std::uint32_t round);
-
-/// Specialization of 4h_mark_pixels.comp.
-gpu::Specialization mark_pixels_constants(const DrawVariant& variant, TileDraw how);
-
+gpu::Pass mark_pixels(const DrawVariant& variant, TileDraw how, std::uint64_t tiles, std::uint32_t round);
 }  // namespace edgesplat::passes

@@ -38,9 +38,8 @@ std::uint32_t prepared_slots(std::uint64_t entries) {
     return static_cast<std::uint32_t>(std::bit_ceil(std::clamp<std::uint64_t>(wanted, 1, shader::PREPARED_ENTRIES)));
 }
 
-void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count) {
-    commands.dispatch("4g_prepare_splats.comp", draw_constants(variant), chunk, commands.groups_for(count, 64));
-    commands.barrier();
+gpu::Pass prepare_splats(const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count) {
+    return {"4_prepare_splats", {{"4g_prepare_splats.comp", draw_constants(variant), gpu::Invocations{count}, chunk}}};
 }
 
 }  // namespace edgesplat::passes

@@ -9,7 +9,7 @@ namespace edgesplat::passes {
 
 /// FrameParams: reads the `count` entries of chunk `chunk` in `order` and their splats; writes their records into the
 /// image at BIND_PREPARED, which must have at least `count` slots.
-void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count);
+gpu::Pass prepare_splats(const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count);
 
 /// Texels per record: PREPARED_STRIDE of shaders/splats/prepared_splat.glsl.
 std::uint32_t prepared_stride(const DrawVariant& variant);

@@ -10,17 +10,14 @@
 namespace edgesplat::passes {
 
 /// FrameParams: reads chunk `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`
-/// (the buffer `counters`); writes `tile_ranges` and `tile_entries`. Saturated tiles get no list. `steps`: number of
+/// (which must be zero); writes `tile_ranges` and `tile_entries`. Saturated tiles get no list. `steps`: number of
 /// dispatches of PAIR_STEPS pairs for the fullest column; not used by the parallel sort.
-void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shader::FrameParams& params,
-                std::uint32_t chunk, std::uint32_t steps);
+gpu::Pass sort_tiles(const gpu::DeviceProfile& profile, const shader::FrameParams& params, std::uint32_t chunk,
+                     std::uint32_t steps);
 
 /// Plans the chunks on the device: reads `sheet_pairs` and `sheet_starts`, writes `chunk_slots` ranges into `chunks`.
 /// They are those of edgesplat::plan_chunks(), then empty ones. A chunk with more than `chunk_pairs` pairs, or more
 /// splats than are prepared at once, is left empty.
-void plan_chunks(gpu::Commands& commands);
-
-/// The shaders of both functions. In refined pictures the host plans the chunks.
-std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile, bool refined);
+gpu::Pass plan_chunks();
 
 }  // namespace edgesplat::passes

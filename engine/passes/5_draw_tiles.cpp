@@ -21,57 +21,45 @@ gpu::Specialization constants_of(const DrawVariant& variant, TileDraw how, std::
     return constants;
 }
 
-std::uint32_t pushed(const TileRound& round) {
-    return round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U);
+/// A dispatch for the pixels of a round, in workgroups of `group` invocations.
+gpu::Dispatch over_pixels(const char* shader, const DrawVariant& variant, TileDraw how, std::uint32_t group,
+                          std::uint64_t groups, const TileRound& round) {
+    return {shader, constants_of(variant, how, group), gpu::Workgroups{groups},
+            round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U)};
 }
 
 }  // namespace
 
-gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how) {
-    return constants_of(variant, how, how.profile->list_group);
+gpu::Pass trace_faces(const DrawVariant& variant, TileDraw how, std::uint64_t tiles, const TileRound& round) {
+    gpu::Pass pass{"5_trace_faces", {}};
+    if (variant.traced)
+        pass.dispatches = {over_pixels("5_trace_faces.comp", variant, how, how.profile->list_group, tiles, round)};
+    return pass;
 }
 
-gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
-    return constants_of(variant, how, tile_group(how));
+gpu::Pass begin_surfaces(const DrawVariant& variant, const glm::ivec2& size) {
+    gpu::Pass pass{"5_begin_surfaces", {}};
+    if (variant.begins)
+        pass.dispatches = {{"5_begin_surfaces.comp",
+                            {{shader::SPEC_ISO_COUNT, variant.iso_count},
+                             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
+                             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+                             {shader::SPEC_SHADOWS, variant.shadows}},
+                            gpu::per_pixel(size)}};
+    return pass;
 }
 
-void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
-                 const TileRound& round) {
-    commands.dispatch("5_trace_faces.comp", trace_constants(variant, how), pushed(round),
-                      commands.groups_for(tiles, 1));
-    commands.barrier();
+gpu::Pass draw_tiles(const DrawVariant& variant, TileDraw how, const TileRound& round) {
+    const char* name = variant.surfaces ? "5_draw_surfaces" : "5_draw_tiles";
+    const char* shader = variant.surfaces ? "5_draw_surfaces.comp" : "5_draw_tiles.comp";
+    return {name, {over_pixels(shader, variant, how, tile_group(how), round.groups, round)}};
 }
 
-gpu::Specialization begin_constants(const DrawVariant& variant) {
-    return {{shader::SPEC_ISO_COUNT, variant.iso_count},
-            {shader::SPEC_CLIP_KEEP, variant.clip.keep},
-            {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
-            {shader::SPEC_SHADOWS, variant.shadows},
-            {shader::SPEC_GROUP, kBeginGroup}};
-}
-
-void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
-    commands.dispatch("5_begin_surfaces.comp", begin_constants(variant), 0, commands.groups_for(pixels, kBeginGroup));
-    commands.barrier();
-}
-
-void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
-    commands.dispatch("5_draw_surfaces.comp", tile_constants(variant, how), pushed(round),
-                      commands.groups_for(round.groups, 1));
-    commands.barrier();
-}
-
-void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
-    commands.dispatch("5_shade_surfaces.comp", tile_constants(variant, how), pushed(round),
-                      commands.groups_for(round.groups, 1));
-    commands.barrier();
-}
-
-void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
-    commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), pushed(round),
-                      commands.groups_for(round.groups, 1));
-    commands.barrier();
+gpu::Pass shade_surfaces(const DrawVariant& variant, TileDraw how, const TileRound& round) {
+    gpu::Pass pass{"5_shade_surfaces", {}};
+    if (variant.surfaces)
+        pass.dispatches = {over_pixels("5_shade_surfaces.comp", variant, how, tile_group(how), round.groups, round)};
+    return pass;
 }
 
 }  // namespace edgesplat::passes

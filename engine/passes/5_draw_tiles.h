@@ -34,32 +34,23 @@ struct TileRound {
 };
 
 /// FrameParams: writes to `traced_rays` where the rays of the round's pixels meet the surface, for entries in
-/// `traced_entries`. Reads the field's coefficients.
-void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
-                 const TileRound& round);
+/// `traced_entries`. Reads the field's coefficients. Only if rays trace faces.
+gpu::Pass trace_faces(const DrawVariant& variant, TileDraw how, std::uint64_t tiles, const TileRound& round);
 
 /// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats; composites the chunk's sheets
 /// behind `output_pixels` (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum); counts saturated pixels in
 /// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished. In a mixture, kernels end at
 /// `seen_ways`, and surfaces that the sheets pass are composited.
-void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
+/// With surface splats it counts votes in `tile_sheets` and marks decided pixels as opaque.
+gpu::Pass draw_tiles(const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 /// FrameParams: clears the pixels' votes, or stores that matter begins where their rays enter the volume or what clip
-/// planes keep. Reads the volume and the field's coefficients.
-void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size);
-gpu::Specialization begin_constants(const DrawVariant& variant);
-inline constexpr std::uint32_t kBeginGroup = 256;  ///< invocations per workgroup
-
-/// The same for surface splats: counts their votes in `tile_sheets`, and marks decided pixels as opaque.
-void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
+/// planes keep. Reads the volume and the field's coefficients. Only with DrawVariant::begins.
+gpu::Pass begin_surfaces(const DrawVariant& variant, const glm::ivec2& size);
 
 /// Writes the colour, or other payload, of the surfaces that the pixels' votes decide; or, as
 /// round 1, only marks the pixels as opaque that are decided up to FrameParams::sheets_drawn. `round`: all pixels of a
-/// step. In a mixture, it also writes `seen_surfaces` and `seen_ways`.
-void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
-
-/// Specialization of 5_trace_faces.comp, and of 5_draw_tiles.comp.
-gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how);
-gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how);
+/// step. In a mixture, it also writes `seen_surfaces` and `seen_ways`. Only with surface splats.
+gpu::Pass shade_surfaces(const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 }  // namespace edgesplat::passes

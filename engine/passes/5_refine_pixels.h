@@ -10,9 +10,6 @@ namespace edgesplat::passes {
 /// `tile_pixels` and counted in `tile_todo`. Resets `tile_closed` to 0.
 /// In a mixture, only pixels whose rays end at one smooth surface, or at none, are interpolated; those of surface
 /// splats with the surface that kernels end at.
-void refine_pixels(gpu::Commands& commands, const DrawVariant& variant, std::uint64_t tiles, std::uint32_t step);
-
-/// Specialization of 5_refine_pixels.comp.
-gpu::Specialization refine_constants(const DrawVariant& variant, std::uint32_t step);
+gpu::Pass refine_pixels(const DrawVariant& variant, std::uint64_t tiles, std::uint32_t step);
 
 }  // namespace edgesplat::passes

@@ -2,10 +2,10 @@
 
 namespace edgesplat::passes {
 
-void join_surfaces(gpu::Commands& commands, const glm::ivec2& size) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
-    commands.dispatch("6_join_surfaces.comp", {}, 0, commands.groups_for(pixels, 64));
-    commands.barrier();
+gpu::Pass join_surfaces(const DrawVariant& variant, const glm::ivec2& size) {
+    gpu::Pass pass{"6_join_surfaces", {}};
+    if (variant.mixed) pass.dispatches = {{"6_join_surfaces.comp", {}, gpu::per_pixel(size)}};
+    return pass;
 }
 
 }  // namespace edgesplat::passes

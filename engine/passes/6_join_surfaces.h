@@ -5,7 +5,8 @@
 
 namespace edgesplat::passes {
 
-/// FrameParams: composites the surfaces in `seen_surfaces` that no sheet passed behind `output_pixels`.
-void join_surfaces(gpu::Commands& commands, const glm::ivec2& size);
+/// FrameParams: composites the surfaces in `seen_surfaces` that no sheet passed behind `output_pixels`. Only in a
+/// mixture.
+gpu::Pass join_surfaces(const DrawVariant& variant, const glm::ivec2& size);
 
 }  // namespace edgesplat::passes

@@ -13,6 +13,6 @@ enum class Merge : std::uint32_t {
     Take    ///< nearest -> seen
 };
 
-void merge_surfaces(gpu::Commands& commands, Merge how, const glm::ivec2& size);
+gpu::Pass merge_surfaces(Merge how, const glm::ivec2& size);
 
 }  // namespace edgesplat::passes

@@ -5,11 +5,8 @@
 
 namespace edgesplat::passes {
 
-/// Specialization of 7_resolve.comp.
-gpu::Specialization resolve_constants(const DrawVariant& variant, bool gradient);
-
 /// FrameParams: writes `output_pixels`, (height, width) vec4, linear light. Tiled pictures are resolved in place.
 /// `gradient`: the background has two colours.
-void resolve(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size, bool gradient);
+gpu::Pass resolve(const DrawVariant& variant, const glm::ivec2& size, bool gradient);
 
 }  // namespace edgesplat::passes

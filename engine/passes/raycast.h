@@ -22,9 +22,9 @@ struct RaycastVariant {
 
 /// Volume -> distance of every brick to the nearest one that is not transparent in the variant's field. The ray
 /// caster's descriptor set must be bound.
-void classify_bricks(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec3& dims);
+gpu::Pass classify_bricks(const RaycastVariant& variant, const glm::ivec3& dims);
 
 /// Writes the pixels at FrameParams::output_pixels of the ray caster's block: (height, width) vec4, linear light.
-void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec2& size);
+gpu::Pass cast_rays(const RaycastVariant& variant, const glm::ivec2& size);
 
 }  // namespace edgesplat::passes

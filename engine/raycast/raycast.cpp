@@ -119,7 +119,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
     commands.run([&, &image = bricks] {
         commands.bind_compute_set(bindings_.set());
         commands.prepare({&scratch, &image});
-        commands.span("raycast_bricks", [&] { passes::classify_bricks(commands, plan.variant, scene.dims); });
+        commands.pass(passes::classify_bricks(plan.variant, scene.dims));
     });
     // The slot must not keep a freed image.
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks);
@@ -131,7 +131,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
 void RaycastResources::cast(gpu::Commands& commands, const RaycastPlan& plan) const {
     commands.run([&] {
         commands.bind_compute_set(bindings_.set());
-        commands.span("raycast", [&] { passes::cast_rays(commands, plan.variant, plan.size); });
+        commands.pass(passes::cast_rays(plan.variant, plan.size));
     });
 }
 

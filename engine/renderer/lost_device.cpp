@@ -39,7 +39,7 @@ RenderResult Renderer::draw_again_if_lost(const std::function<RenderResult()>& d
             return draw();
         } catch (const vk::DeviceLostError&) {
             // The other parts of a divided picture have continued and cannot repeat it.
-            if (again || state_->options.exchange != nullptr) give_up(device().name);
+            if (again) give_up(device().name);
         } catch (const vk::SystemError& error) {
             fail("Vulkan: {}", error.what());
         }

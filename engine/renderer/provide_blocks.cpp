@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "engine/clock.h"
-#include "engine/distribute/parts.h"
 #include "engine/error.h"
 #include "engine/renderer/splat_provider.h"
 #include "footprints/kernel.h"
@@ -17,6 +17,24 @@ Settings settings_in_blocks(const FrameRequest& request) {
     Settings settings = drawn_settings(request);
     settings.opaque = OpaqueMatter::Kernels;
     return settings;
+}
+
+/// First sheet, numbered from the eye on, that kernels of a block's voxels may reach. `geometry`: of the block's level.
+int first_sheet(const VolumeGeometry& geometry, const FrameRequest& request, const CollectionBlock& block) {
+    constexpr double kMostSheets = 2e9;
+    const Settings drawn = drawn_settings(request);
+    const CameraFrame view = camera_frame(request.camera);
+    const double reach = kernel_reach(drawn);
+    const glm::dvec3 low = glm::dvec3(block.core_low) - reach;
+    const glm::dvec3 high = glm::dvec3(block.core_low + block.core_size - 1) + reach;
+    double depth = std::numeric_limits<double>::max();
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 at = glm::mix(low, high, glm::bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0));
+        depth = std::min(depth, glm::dot(view.forward, geometry.to_world(at) - view.eye));
+    }
+    // One less for the device's rounding.
+    const double sheet = std::floor(depth / sheet_thickness(geometry, request.camera, drawn)) - 1;
+    return static_cast<int>(std::clamp(sheet, 0.0, kMostSheets));
 }
 
 }  // namespace
@@ -122,7 +140,7 @@ SplatProvider::Gathered SplatProvider::collect_missing(const FrameRequest& reque
     return Gathered::All;
 }
 
-std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request) {
+std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request) const {
     const auto& geometry = shown_.volume.volume()->geometry;
     const auto blocks = shown_.splats.blocks();
     const ViewVolume view(geometry, request.camera, request.size, request.scene.effects.antialias);
@@ -132,48 +150,30 @@ std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request
         const CollectionBlock& block = blocks[i];
         if (view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
     }
-    if (!divides_blocks_) return shown;
-    const double thickness = sheet_thickness(geometry, request.camera, drawn_settings(request));
-    std::vector<CollectionBlock> cores;
-    for (const std::size_t i : shown)
-        cores.push_back(blocks[i]);
-    const glm::ivec2 slab = slab_of_part(geometry, request.camera, thickness, cores, options_->exchange->part());
-    drawer_->set_slab(slab);
-    std::erase_if(shown, [&](std::size_t i) {
-        const glm::ivec2 sheets = sheets_of_block(geometry, request.camera, thickness, reach, blocks[i]);
-        return sheets.y <= slab.x || sheets.x >= slab.y;
-    });
     return shown;
 }
 
 bool SplatProvider::can_skip_hidden_blocks(const FrameRequest& request) const {
     const Settings drawn = drawn_settings(request);
-    // Parts and optical depth need occluded splats; several samples are several pictures, each with its own view.
-    return options_->exchange == nullptr && !request.outputs.tau && request.scene.effects.samples == 1 &&
-           drawn.saturation < 1 && drawn.sheet_format == SheetFormat::Tiles;
+    // Optical depth needs occluded splats; several samples are several pictures, each with its own view.
+    return !request.outputs.tau && request.scene.effects.samples == 1 && drawn.saturation < 1 &&
+           drawn.sheet_format == SheetFormat::Tiles;
 }
 
 void SplatProvider::sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const {
-    const Settings drawn = drawn_settings(request);
-    const auto& geometry = shown_.volume.volume()->geometry;
-    const double thickness = sheet_thickness(geometry, request.camera, drawn), reach = kernel_reach(drawn);
-    std::ranges::stable_sort(blocks, {}, [&](std::size_t i) {
-        return sheets_of_block(geometry, request.camera, thickness, reach, shown_.splats.blocks()[i]).x;
-    });
+    const VolumeGeometry& geometry = shown_.volume.volume()->geometry;
+    std::ranges::stable_sort(blocks, {},
+                             [&](std::size_t i) { return first_sheet(geometry, request, shown_.splats.blocks()[i]); });
 }
 
 void SplatProvider::skip_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing,
                                        std::size_t first) {
     if (shown_.splats.lists().splat_count == 0 || first + 1 >= missing.size()) return;
-    const Settings drawn = drawn_settings(request);
-    const auto& geometry = shown_.volume.volume()->geometry;
     const auto blocks = shown_.splats.blocks();
     // All missing blocks lie behind these sheets, so pixels that they saturate are saturated in the whole picture.
-    const glm::ivec2 sheets =
-        sheets_of_block(geometry, request.camera, sheet_thickness(geometry, request.camera, drawn), kernel_reach(drawn),
-                        blocks[missing[first]]);
+    const int sheet = first_sheet(shown_.volume.volume()->geometry, request, blocks[missing[first]]);
     shown_.splats.bound_blocks(shown_.volume);
-    const OpenTiles open = drawer_->open_tiles(shown_, request, sheets.x);
+    const OpenTiles open = drawer_->open_tiles(shown_, request, sheet);
     const auto is_hidden = [&](std::size_t i) {
         const CollectionBlock& block = blocks[i];
         return !open.may_show({block.core_low, block.core_low + block.core_size - 1});

@@ -22,7 +22,10 @@ void SplatProvider::set_volume(std::shared_ptr<const Volume> volume) {
     shown_ = LevelStore(*session_);
     other_ = LevelStore(*session_);
     levels_.set(std::move(volume));
-    if (levels_.original()) use_level(0);
+    if (levels_.original())
+        use_level(0);
+    else
+        added_.clear();
 }
 
 bool SplatProvider::take_changes(const std::shared_ptr<const Volume>& next) {
@@ -160,8 +163,6 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
     }
     for (int at = countable;; ++at) {
         settle(request, at);
-        while (!agree_on_level(at))
-            settle(request, at);
         release_unused(settings);
         Gathered gathered = Gathered::All;
         cost_.times.clear();
@@ -169,7 +170,7 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
             gathered = collect_in_blocks(request, patience, stats.setup_milliseconds);
         else
             stats.setup_milliseconds += provide_undivided(request);
-        if (!any_part_overflows(gathered)) return gathered;
+        if (gathered != Gathered::TooMany) return gathered;
         const auto need = request.volume->values.empty() ? std::nullopt : memory_shortfall(request);
         if (need) refuse_memory(session_->device(), request, *need, options_->memory_budget);
         if (at + 1 == count) {
@@ -230,40 +231,6 @@ void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
     if (!stats.in_blocks) return;
     stats.blocks = shown_.splats.blocks().size();
     stats.blocks_held = shown_.splats.blocks_held();
-}
-
-bool SplatProvider::agree_on_level(int& finest) {
-    drawer_->set_slab({});
-    PartExchange* const exchange = options_->exchange;
-    const int level = shown_.volume.level();
-    divides_blocks_ = exchange && exchange->largest(shown_.volume.in_blocks() ? 0 : 1) == 0;
-    const int coarsest = exchange ? exchange->largest(level) : level;
-    if (!exchange || -exchange->largest(-level) == coarsest) return true;
-    finest = coarsest;
-    return false;
-}
-
-bool SplatProvider::any_part_overflows(Gathered gathered) {
-    PartExchange* const exchange = options_->exchange;
-    const bool here = gathered == Gathered::TooMany;
-    if (!exchange) return here;
-    if (exchange->largest(here ? 1 : 0) > 0) return true;
-    if (!divides_blocks_) return false;
-    // All parts need the same box, since sheet numbers and the device's rounding depend on it.
-    const SplatExtent extent = shown_.splats.lists().extent();
-    glm::ivec3 low = extent.low, high = extent.high;
-    const bool none = extent.count == 0;
-    const glm::ivec3 last = shown_.volume.volume()->geometry.dims - 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = -exchange->largest(none ? -last[axis] : -low[axis]);
-        high[axis] = exchange->largest(none ? 0 : high[axis]);
-    }
-    if (glm::any(glm::greaterThan(low, high))) {
-        low = glm::ivec3(0);
-        high = last;
-    }
-    shown_.splats.widen_box(low, high);
-    return false;
 }
 
 }  // namespace edgesplat

@@ -83,8 +83,8 @@ class SplatProvider {
     /// The same for the blocks in `missing`, a subset of `needed`.
     Gathered collect_missing(const FrameRequest& request, const std::vector<std::size_t>& needed,
                              std::vector<std::size_t> missing, std::uint64_t most_splats, double patience);
-    /// Numbers of the blocks that a picture shows; for a divided picture, those of this part's slab.
-    std::vector<std::size_t> blocks_shown(const FrameRequest& request);
+    /// Numbers of the blocks that a picture shows.
+    std::vector<std::size_t> blocks_shown(const FrameRequest& request) const;
     /// Whether occluded blocks need not be read.
     bool can_skip_hidden_blocks(const FrameRequest& request) const;
     /// Sorts blocks by their first sheet, nearest to the eye first.
@@ -93,22 +93,15 @@ class SplatProvider {
     /// are occluded in every pixel.
     void skip_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
 
-    /// Whether all parts of a picture use the same level; if not, sets `finest` to the coarsest of them.
-    bool agree_on_level(int& finest);
-    /// Whether any part of the picture has too many splats. If none has, the bounding box is widened to that of all
-    /// parts' splats.
-    bool any_part_overflows(Gathered gathered);
-
     DeviceSession* session_;
     const RenderOptions* options_;
     PictureDrawer* drawer_;
     std::optional<RaycastResources>* rays_;
     VolumeLevels levels_;
     LevelStore shown_;
-    std::vector<Added> added_;     ///< in the order of the scene
-    LevelStore other_;             ///< a level being collected while a coarser one is shown; empty: none
-    SetupCost cost_;               ///< of the picture being provided
-    bool divides_blocks_ = false;  ///< all parts of the picture have the volume in blocks
+    std::vector<Added> added_;  ///< in the order of the scene
+    LevelStore other_;          ///< a level being collected while a coarser one is shown; empty: none
+    SetupCost cost_;            ///< of the picture being provided
     std::vector<std::pair<std::string, std::uint64_t>> checked_;  ///< resources of the last memory check
     std::optional<MemoryNeed> checked_need_;                      ///< memory_shortfall()'s result for them
 };

@@ -132,11 +132,6 @@ void SplatStore::bound_blocks(const VolumeStore& volume) {
     index_blocks();
 }
 
-void SplatStore::widen_box(const glm::ivec3& low, const glm::ivec3& high) {
-    lists_.box_low = low;
-    lists_.box_high = high;
-}
-
 void SplatStore::index_blocks() {
     std::vector<const CollectedBlock*> held;
     for (const auto& block : residence_->held)

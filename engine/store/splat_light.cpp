@@ -81,14 +81,14 @@ std::vector<MatterBeside> matter_of(std::span<const LitVolume> beside) {
 }
 
 /// Runs one of the passes and waits.
-void run_light(DeviceSession& session, const char* name, const Occluder& occluder, const LightInputs& in,
-               void (*pass)(gpu::Commands&, const passes::SplatLight&), SetupCost& cost) {
+void run_light(DeviceSession& session, const Occluder& occluder, const LightInputs& in,
+               gpu::Pass (*pass)(const passes::SplatLight&), SetupCost& cost) {
     session.bindings().write_volume(occluder.volume.images());
     const gpu::Buffer block(session.device(), sizeof(shader::LightParams), gpu::Buffer::Place::Host, kLightBlock.name);
     block.mapped<shader::LightParams>(1)[0] = in.params;
     session.bindings().set().put_block(shader::BIND_LIGHT, block);
     gpu::Commands& commands = session.commands();
-    commands.run([&] { commands.span(name, [&] { pass(commands, in.variant); }); });
+    commands.run([&] { commands.pass(pass(in.variant)); });
     add_times(cost.times, commands.span_times());
 }
 
@@ -116,7 +116,7 @@ bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, std::spa
     for (const Occluder& occluder : occluders_of(volume, scene, beside)) {
         LightInputs in(lists_, volume.volume()->geometry, occluder, lists_.occlusion);
         in.params.radius = static_cast<float>(plan.radius);
-        run_light(*session_, "2b_occlude_ambient", occluder, in, passes::occlude_ambient, cost);
+        run_light(*session_, occluder, in, passes::occlude_ambient, cost);
     }
     occluded_ = std::move(plan);
     return true;
@@ -143,7 +143,7 @@ bool SplatStore::cast_shadows(const VolumeStore& volume, const Scene& scene, std
             const bool far = light.kind == Light::Kind::Directional;
             in.params.light = far ? glm::vec4(glm::normalize(to_index * glm::normalize(light.direction)), 0)
                                   : glm::vec4(geometry.to_index(light.position), 1);
-            run_light(*session_, "2c_cast_shadows", occluder, in, passes::cast_shadows, cost);
+            run_light(*session_, occluder, in, passes::cast_shadows, cost);
             ++in.params.channel;
         }
     }

@@ -195,9 +195,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
         params.core_size = core.size();
         params.brick_count = 0;
         const passes::EdgeRegion region{plan.dims, params.core_low, params.core_size};
-        run([&] {
-            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
-        });
+        run([&] { commands.pass(passes::estimate_edges(region, estimate_inputs(plan))); });
         cost.voxels_estimated += voxels_that_depend_on(changed, plan.dims);
     }
     place_block(plan, whole);
@@ -295,9 +293,7 @@ void SplatStore::place_block(const CollectionPlan& plan, const CollectionBlock& 
 
 void SplatStore::mark_block(const CollectionPlan& plan, const CollectionBlock& block) {
     if (!plan.buried) return;
-    gpu::Commands& commands = session_->commands();
-    commands.span("1a_mark_buried",
-                  [&] { passes::mark_buried(commands, block.size, plan.params.opaque_count, plan.clip); });
+    session_->commands().pass(passes::mark_buried(block.size, plan.params.opaque_count, plan.clip));
 }
 
 passes::CollectSplats SplatStore::block_inputs(const CollectionPlan& plan, const CollectionBlock& block) const {
@@ -308,9 +304,8 @@ passes::CollectSplats SplatStore::block_inputs(const CollectionPlan& plan, const
 }
 
 void SplatStore::count_block(const passes::CollectSplats& collect) {
-    gpu::Commands& commands = session_->commands();
     std::ranges::fill(lists_.run_offsets.mapped<std::uint32_t>(passes::collect_runs(collect.core_size)), 0U);
-    commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
+    session_->commands().pass(passes::count_splats(collect));
 }
 
 void SplatStore::scan_runs(const CollectionBlock& block, CollectedBlock& collected) {
@@ -355,20 +350,17 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
     params.edge_count_at = static_cast<std::uint32_t>(runs);
     gpu::Commands& commands = session_->commands();
-    const auto run = [&](const auto& body) {
-        commands.run([&] { commands.span("2_collect_splats", body); });
-        add_times(cost.times, commands.span_times());
-    };
     // In parts, each short enough to say how far it is.
     std::uint64_t done = 0;
     do {
         const std::uint64_t part = std::min(out.count - done, kFinishedAtOnce);
         params.list_first = static_cast<std::uint32_t>(out.first + done);
         params.list_count = static_cast<std::uint32_t>(part);
-        run([&] {
-            if (done == 0) passes::write_splats(commands, collect);
-            passes::finish_splats(commands, collect, part);
+        commands.run([&] {
+            if (done == 0) commands.pass(passes::write_splats(collect));
+            commands.pass(passes::finish_splats(collect, part));
         });
+        add_times(cost.times, commands.span_times());
         done += part;
         if (cost.progress && out.count > 0) cost.progress(static_cast<double>(done) / static_cast<double>(out.count));
     } while (done < out.count);
@@ -398,14 +390,12 @@ std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& pl
         if (stale.mask) mark_block(plan, block);
         if (estimates) {
             const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size, bricks_listed_};
-            commands.span("1_estimate_edges", [&] {
-                // Bricks that are not listed have no edges.
-                if (plan.surfaces) {
-                    commands.clear(lists_.edges);
-                    commands.barrier();
-                }
-                passes::estimate_edges(commands, region, estimate_inputs(plan));
-            });
+            // Bricks that are not listed have no edges.
+            if (plan.surfaces) {
+                commands.clear(lists_.edges);
+                commands.barrier();
+            }
+            commands.pass(passes::estimate_edges(region, estimate_inputs(plan)));
         }
         count_block(block_inputs(plan, block));
     });

@@ -98,8 +98,6 @@ class SplatStore {
     bool drop_blocks(std::span<const std::size_t> needed, bool shrink);
     /// Updates the list's bounding box and bricks; call after blocks were added.
     void bound_blocks(const VolumeStore& volume);
-    /// Sets a bounding box that also covers the splats of the picture's other parts.
-    void widen_box(const glm::ivec3& low, const glm::ivec3& high);
     /// Number of splats that the list has room for.
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 

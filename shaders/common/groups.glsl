@@ -1,4 +1,4 @@
-// Numbers of workgroups and invocations of a dispatch along a line. Commands::groups_for folds a long line into rows, so
+// Numbers of workgroups and invocations of a dispatch along a line. Commands::dispatch folds a long line into rows, so
 // gl_WorkGroupID.x alone is no number. Numbers beyond the line exist in the last row; the shader ignores them.
 uint group_number() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
 

@@ -6,7 +6,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x_id = SPEC_GROUP) in;
+layout(local_size_x = 256) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;

@@ -312,7 +312,7 @@ TEST(PlanChunks, GivesTheSameChunksOnDeviceAndHost) {
                 p.prepared_mask = entries - 1;
                 state.commands().run([&] {
                     sort_splats(state.commands(), state.plan(), state.targets(), false);
-                    passes::plan_chunks(state.commands());
+                    state.commands().pass(passes::plan_chunks());
                 });
                 const auto pairs = sheet_pairs(state.plan(), state.targets());
                 const auto starts = sheet_starts(state.plan(), state.targets());

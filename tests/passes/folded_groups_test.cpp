@@ -138,7 +138,7 @@ TEST(FoldedGroups, CoverTheLineOnce) {
     for (const std::uint32_t most : {1U, 3U, 7U, gpu::Commands::kMostGroups}) {
         const Folding folding(commands, most);
         for (const std::uint64_t count : {0ULL, 1ULL, 64ULL, 65ULL, 1000ULL, 4194240ULL, 4194241ULL, 4294836225ULL}) {
-            const gpu::Groups groups = commands.groups_for(count, 64);
+            const glm::uvec3 groups = commands.workgroups({"3_select_footprints.comp", {}, gpu::Invocations{count}});
             const std::uint64_t needed = std::max<std::uint64_t>((count + 63) / 64, 1);
             EXPECT_LE(groups.x, most);
             EXPECT_GE(std::uint64_t{groups.x} * groups.y, needed);

@@ -13,7 +13,7 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{72, 60};
+constexpr glm::ivec2 kBesideSize{72, 60};
 
 /// Depth below a ball's surface, mm, on a grid that holds it.
 std::shared_ptr<const Volume> ball(const glm::dvec3& middle, double radius, const glm::dmat3& axes) {
@@ -136,8 +136,9 @@ std::vector<PassScene> scenes() {
 
 std::vector<glm::vec4> drawn(const PassScene& s, std::uint32_t payload = shader::PAYLOAD_COLOR) {
     DeviceUnderTest& state = prepared(s);
-    state.draw(s.scene, s.camera, s.settings, kSize, payload);
-    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    state.draw(s.scene, s.camera, s.settings, kBesideSize, payload);
+    const auto pixels =
+        state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kBesideSize.x * kBesideSize.y));
     return {pixels.begin(), pixels.end()};
 }
 
@@ -160,7 +161,7 @@ TEST(SeveralVolumes, LookLikeTheReferences) {
         SCOPED_TRACE(s.name);
         const auto got = drawn(s);
         const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
-        const Image want = reference.render(s.camera, kSize.x, kSize.y);
+        const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y);
         const double psnr = decibels_of_most(got, want.pixels, 4, 1);
         std::printf("%-20s %.1f dB\n", s.name.c_str(), psnr);
         EXPECT_GE(psnr, 55);
@@ -174,7 +175,7 @@ TEST(SeveralVolumes, HaveTheReferencesOutputs) {
          {std::tuple{shader::PAYLOAD_NORMAL, reference::Output::Normal, 3, 1.0},
           {shader::PAYLOAD_DEPTH_DISTANCE, reference::Output::Depth, 1, 50.0}}) {
         const auto got = drawn(s, payload);
-        const Image want = reference.render(s.camera, kSize.x, kSize.y, output);
+        const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y, output);
         EXPECT_GE(decibels_of_most(got, want.pixels, channels, scale), 45) << payload;
     }
 }
@@ -184,10 +185,10 @@ TEST(SeveralVolumes, AreExactForUnlitBalls) {
     PassScene s = two_balls();
     s.scene.lights.clear();
     const auto got = drawn(s);
-    const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+    const reference::View view(s.camera, s.volume.geometry, kBesideSize.x, kBesideSize.y);
     int wrong = 0, met = 0;
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kBesideSize.y; ++y)
+        for (int x = 0; x < kBesideSize.x; ++x) {
             double nearest = 1e9;
             glm::dvec4 want(0);
             bool touches = false;
@@ -205,7 +206,7 @@ TEST(SeveralVolumes, AreExactForUnlitBalls) {
             }
             if (touches) continue;
             met += want.a > 0 ? 1 : 0;
-            const glm::dvec4 off = glm::abs(glm::dvec4(got[static_cast<std::size_t>(y * kSize.x + x)]) - want);
+            const glm::dvec4 off = glm::abs(glm::dvec4(got[static_cast<std::size_t>(y * kBesideSize.x + x)]) - want);
             wrong += std::max({off.x, off.y, off.z, off.w}) > 2e-3 ? 1 : 0;
         }
     EXPECT_GT(met, 800);
@@ -254,9 +255,9 @@ TEST(SeveralVolumes, OfOneObjectShowThatObject) {
 
 /// Light that both take is as if one volume had the matter of both.
 TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
-    constexpr glm::dvec3 kMiddle(0, 4, 13);
+    constexpr glm::dvec3 kBallMiddle(0, 4, 13);
     PassScene two = two_balls();
-    two.scene.added[0] = added(ball(kMiddle, 4, kOblique), {0}, {two.scene.materials[1]});
+    two.scene.added[0] = added(ball(kBallMiddle, 4, kOblique), {0}, {two.scene.materials[1]});
     two.camera = {.eye = {9, -40, 45}, .direction = {-9, 41, -40}, .up = {0, 0, 1}, .fov_y = 30};
     PassScene one = two;
     one.scene.added.clear();
@@ -269,7 +270,7 @@ TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
             for (int x = 0; x < geometry.dims.x; ++x) {
                 const glm::dvec3 at = geometry.to_world(glm::dvec3(x, y, z));
                 one.volume.values.push_back(
-                    static_cast<float>(std::max(8 - glm::length(at), 4 - glm::length(at - kMiddle))));
+                    static_cast<float>(std::max(8 - glm::length(at), 4 - glm::length(at - kBallMiddle))));
             }
     finish_volume(one.volume);
     const auto compare = [&](const char* name, double least, const auto& change) {
@@ -316,7 +317,7 @@ TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
     coarse.scene.added.clear();
     const auto want = drawn(fine), depths = drawn(fine, shader::PAYLOAD_DEPTH_DISTANCE), got = drawn(both),
                whole_coarse = drawn(coarse);
-    const reference::View view(fine.camera, fine.volume.geometry, kSize.x, kSize.y);
+    const reference::View view(fine.camera, fine.volume.geometry, kBesideSize.x, kBesideSize.y);
     struct Part {
         int pixels = 0, off = 0;  // by more than a hundredth of full scale
         double squares = 0;
@@ -328,12 +329,12 @@ TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
         double decibels() const { return -10 * std::log10(squares / pixels + 1e-20); }
     };
     Part in_fine, at_seam, beyond;
-    for (int y = 1; y + 1 < kSize.y; ++y)
-        for (int x = 1; x + 1 < kSize.x; ++x) {
-            const auto i = static_cast<std::size_t>(y * kSize.x + x);
+    for (int y = 1; y + 1 < kBesideSize.y; ++y)
+        for (int x = 1; x + 1 < kBesideSize.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * kBesideSize.x + x);
             const auto inner = [&](std::size_t at) { return want[at].a > 0.999F; };
             // Where a ray only touches the torus, it sees all of it or nothing.
-            const auto width = static_cast<std::size_t>(kSize.x);
+            const auto width = static_cast<std::size_t>(kBesideSize.x);
             if (!inner(i) || !inner(i - 1) || !inner(i + 1) || !inner(i - width) || !inner(i + width)) continue;
             const glm::dvec3 u = view.ray(x, y);
             const double depth = static_cast<double>(depths[i].x);
