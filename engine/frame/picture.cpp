@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "engine/frame/tiles_cpu/front_first.h"
+#include "engine/frame/tiles_cpu/lists.h"
 #include "engine/gpu/read_back.h"
 #include "footprints/kernel.h"
 
@@ -85,7 +87,7 @@ void PictureDrawer::draw_planned(const CollectedSplats& list) {
     provide_targets(list);
     gpu::Commands& commands = session_->commands();
     if (!plan_.variant.tiles) {
-        times_ = draw_sheets(commands, plan_, targets_.resources());
+        times_ = draw_layers(commands, plan_, targets_.resources());
         return;
     }
     const passes::TileDraw how{.profile = &session_->profile(), .count = options_->counting};

@@ -1,10 +1,10 @@
 // Draws pictures of a level's splats: passes 3 to 7, once for each payload and sample.
 #pragma once
 
-#include "engine/compositors/tiles/hiding.h"
 #include "engine/frame/frame.h"
 #include "engine/frame/render_options.h"
 #include "engine/frame/targets.h"
+#include "engine/frame/tiles/hiding.h"
 #include "engine/scene/frame_request.h"
 #include "engine/store/splat_store.h"
 

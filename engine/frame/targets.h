@@ -1,7 +1,7 @@
 // Owns the images and buffers of a picture, sized by its pixels, sheets and splats.
 #pragma once
 
-#include "engine/compositors/tiles/lists.h"
+#include "engine/frame/tiles/chunks.h"
 #include "engine/plan/device_session.h"
 #include "engine/plan/resource_table.h"
 

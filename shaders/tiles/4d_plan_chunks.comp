@@ -1,4 +1,4 @@
-// Plans which sheets are drawn together: plan_chunks() (engine/compositors/tiles/lists.h) on the device, so that the
+// Plans which sheets are drawn together: plan_chunks() (engine/frame/tiles/chunks.h) on the device, so that the
 // host does not wait. One workgroup: all invocations load sheets, one processes them. A chunk that exceeds its memory
 // stays empty; the host detects this afterwards.
 #version 460

@@ -24,7 +24,6 @@ layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
-layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 #include "shaders/drivers/texels.glsl"
@@ -43,6 +42,8 @@ layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/splats/prepared_splat.glsl"
 
 #include "shaders/tiles/tile_marks.glsl"
+uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
+#include "shaders/drivers/rounds.glsl"
 
 // The smallest distance of two voxels, mm.
 float least_voxel() {
@@ -56,11 +57,10 @@ const float TOO_WIDE = 1e30;
 
 void main() {
     uint tile = group_number();
-    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    if (ROUNDS == 1u) tile = load_order(tile);
-    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    uvec2 range = load_range(tile);
-    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    if (tile >= tile_count()) return;
+    tile = tile_in_round(tile);
+    if (tile >= tile_count()) return;
+    uvec2 range = entries_in_round(load_range(tile), draw_round);
     bool closed = load_closed(tile) == load_todo(tile);
     if (range.x >= range.y || closed) return;
     ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);

@@ -17,7 +17,6 @@ layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
-layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
@@ -51,6 +50,7 @@ FaceForm face_form;
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
+#include "shaders/drivers/rounds.glsl"
 #include "shaders/splats/traced_ray.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
@@ -91,11 +91,10 @@ void main() {
     uint item = group_number();
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     if (item >= tile_count() * groups) return;
-    if (ROUNDS == 1u) item = load_order(tile_count() + item);
+    item = pixels_in_round(item);
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
-    uvec2 range = load_range(tile);
-    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    uvec2 range = entries_in_round(load_range(tile), draw_round);
     if (range.x >= range.y) return;
     ivec2 size = params.frame.size;
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;

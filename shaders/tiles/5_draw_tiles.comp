@@ -25,7 +25,6 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
-layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
@@ -71,6 +70,7 @@ float ray_end;  // where the ray ends at a surface, from the eye; only with MIXE
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
+#include "shaders/drivers/rounds.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/seen_surfaces.glsl"
 
@@ -85,15 +85,13 @@ void main() {
     uint item = group_number();
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     if (item >= tile_count() * groups) return;
-    if (ROUNDS == 1u) item = load_order(tile_count() + item);
+    item = pixels_in_round(item);
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
-    uvec2 range = load_range(tile);
-    uint whole_end = range.y;
-    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    uvec2 list = load_range(tile), range = entries_in_round(list, draw_round);
     if (range.x >= range.y) return;
     // The first entry's sheet may have begun in the previous round; the last entry's may continue in the next.
-    bool continues = ROUNDS == 1u && range.y < whole_end, continued = ROUNDS == 1u && draw_round > 0u;
+    bool continues = ROUNDS == 1u && range.y < list.y, continued = ROUNDS == 1u && draw_round > 0u;
     ivec2 size = params.frame.size;
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
     ivec2 pixel = pixel_of(tile, place, count);

@@ -21,7 +21,6 @@ layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
-layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
@@ -50,6 +49,7 @@ ivec3 dims;
 #include "shaders/splats/trace_ray.glsl"
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/tile_places.glsl"
+#include "shaders/drivers/rounds.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip_ray.glsl"
@@ -106,10 +106,9 @@ TracedRay trace_kept(vec3 u, Stretch along) {
 void main() {
     uint draw_round = what & 0xfffffu, tile = group_number();
     if (tile >= tile_count()) return;
-    if (ROUNDS == 1u) tile = load_order(tile);
+    tile = tile_in_round(tile);
     if (tile >= tile_count()) return;
-    uvec2 range = load_range(tile);
-    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    uvec2 range = entries_in_round(load_range(tile), draw_round);
     uint any = 0u;
     for (uint base = range.x; base < range.y; base += MARKED_AT_ONCE) any |= traced_word(word_of(base));
     if (any == 0u) return;

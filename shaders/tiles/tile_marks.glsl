@@ -1,5 +1,4 @@
 // Marks of a tile's pixels. The including shader declares WIDE_MARKS.
-#include "shaders/drivers/iterations.h"
 
 // Cells of a tile with separate marks, row by row: single pixels, or 4 x 2 pixels.
 const uint CELL_X = WIDE_MARKS == 1u ? 4u : 1u;
@@ -14,5 +13,3 @@ uint word_of(uint entry) { return (params.frame.entries_first + entry) / MARKED_
 
 uint cell_of(ivec2 pixel) { return uint(pixel.y) % TILE / CELL_Y * (TILE / CELL_X) + uint(pixel.x) % TILE / CELL_X; }
 
-// The first entry of a list that a round draws.
-uint round_begin(uint draw_round) { return draw_round == 0u ? 0u : TILE_FIRST_ROUND + (draw_round - 1u) * TILE_ROUND; }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "engine/frame/tiles/tile_passes.h"
 #include "engine/passes/4_sort_tiles.h"
 #include "tests/passes/pass_fixture.h"
 

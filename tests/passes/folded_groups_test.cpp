@@ -100,7 +100,7 @@ std::set<std::string> line_shaders(bool side_by_side) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (entry.path().extension() != ".comp") continue;
         const std::string text = text_of(entry.path());
-        const bool columns = text.find("tiles/tile_entries.glsl") != std::string::npos;
+        const bool columns = text.find("tiles_cpu/tile_entries.glsl") != std::string::npos;
         if (columns || text.find("common/groups.glsl") != std::string::npos)
             names.insert(entry.path().filename().string());
     }

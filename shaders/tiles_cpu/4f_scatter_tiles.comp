@@ -1,7 +1,7 @@
 // Step 3 of 3: writes every pair of a splat and an unsaturated tile to its position, sheet by sheet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/tiles/tile_entries.glsl"
+#include "shaders/tiles_cpu/tile_entries.glsl"
 #include "shaders/splats/sheet_of_entry.glsl"
 STORED_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry, store_entry)
 

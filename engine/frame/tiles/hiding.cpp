@@ -1,4 +1,4 @@
-#include "engine/compositors/tiles/hiding.h"
+#include "engine/frame/tiles/hiding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,6 @@
 namespace edgesplat {
 namespace {
 
-// Limit of the mean number of tiles per splat. Above it drawing dominates, and pixels may be refined (should_refine).
-constexpr double kMostTiles = 2.6;
-// Limit of the share of splats in bricks that belong to both parts. Above it drawing all at once is faster.
-constexpr double kMostTwice = 0.3;
-
 /// A box widened by the kernels' reach: its middle relative to the anchor, and half extents, voxels.
 struct WideBox {
     glm::dvec3 middle, half;
@@ -19,21 +14,6 @@ struct WideBox {
         : middle(0.5 * glm::dvec3(box.low + box.high) - glm::dvec3(plan.params.anchor)),
           half(0.5 * glm::dvec3(box.high - box.low) + plan.reach) {}
 };
-
-/// Least and largest depth in a box, mm from the eye.
-glm::dvec2 depths_of(const FramePlan& plan, const WideBox& box) {
-    const glm::dvec3 z(plan.params.view_z);
-    const double middle = glm::dot(z, box.middle) + static_cast<double>(plan.params.anchor_z);
-    const double half = glm::dot(glm::abs(z), box.half);
-    return {middle - half, middle + half};
-}
-
-/// Sheets between two depths, numbered from the eye on, half open; one more on either side for the device's rounding.
-glm::ivec2 sheets_of(const FramePlan& plan, const glm::dvec2& depths) {
-    const glm::dvec2 sheets =
-        glm::clamp(glm::floor(depths / static_cast<double>(plan.params.sheet_thickness)), 0.0, 1e9);
-    return {std::max(static_cast<int>(sheets.x) - 1, 0), static_cast<int>(sheets.y) + 2};
-}
 
 /// Tiles x0, y0, x1, y1, half open, that a box may show in; nullopt if it reaches the eye's plane.
 std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
@@ -57,60 +37,20 @@ std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
     return glm::ivec4(glm::floor(low / kTile), glm::ceil(high / kTile));
 }
 
-/// Estimated number of tiles that a splat at this depth (mm) touches.
-double tiles_of_splat(const FramePlan& plan, double depth) {
-    const auto& p = plan.params;
-    const glm::dmat3 to_world(p.index_to_world);
-    const double voxel = std::max({glm::length(to_world[0]), glm::length(to_world[1]), glm::length(to_world[2])});
-    const double pixels =
-        static_cast<double>(p.support) * voxel / std::max(depth, 1e-6) * p.size.y / static_cast<double>(p.tan_half_y);
-    const double across = 1 + pixels / shader::TILE;
-    return across * across;
-}
-
 }  // namespace
 
-std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least) {
-    const auto& p = plan.params;
-    if (plan.variant.sliced || plan.variant.antialias || p.saturation > 1 || plan.splats_examined < least ||
-        plan.bricks.empty())
-        return std::nullopt;
-    struct Place {
-        double depth;
-        std::uint32_t splats;
-    };
-    std::vector<Place> places;
-    double tiles = 0, splats = 0;
-    for (const std::uint32_t number : plan.bricks) {
-        const SplatBrick& brick = bricks.bricks()[number];
-        const glm::dvec2 depths = depths_of(plan, WideBox(plan, brick.box));
-        places.push_back({0.5 * (depths.x + depths.y), brick.count});
-        tiles += brick.count * tiles_of_splat(plan, places.back().depth);
-        splats += brick.count;
-    }
-    if (tiles > kMostTiles * splats) return std::nullopt;
-    std::ranges::sort(places, {}, &Place::depth);
-    double before = 0;
-    const auto half =
-        std::ranges::find_if(places, [&](const Place& place) { return (before += place.splats) >= 0.5 * splats; });
-    double twice = 0;
-    FrontAndRest out;
-    out.sheet = sheets_of(plan, glm::dvec2(half->depth)).x;
-    for (const std::uint32_t number : plan.bricks) {
-        const glm::ivec2 sheets = sheets_of(plan, depths_of(plan, WideBox(plan, bricks.bricks()[number].box)));
-        const bool in_front = sheets.x<out.sheet, behind = sheets.y> out.sheet;
-        if (in_front) out.front.push_back(number);
-        if (behind) out.rest.push_back(number);
-        if (in_front && behind) twice += bricks.bricks()[number].count;
-    }
-    if (twice > kMostTwice * splats) return std::nullopt;
-    return out;
+glm::dvec2 depths_of(const FramePlan& plan, const VoxelBox& voxels) {
+    const WideBox box(plan, voxels);
+    const glm::dvec3 z(plan.params.view_z);
+    const double middle = glm::dot(z, box.middle) + static_cast<double>(plan.params.anchor_z);
+    const double half = glm::dot(glm::abs(z), box.half);
+    return {middle - half, middle + half};
 }
 
 void cull_behind(FramePlan& plan, const SplatBricks& bricks, std::span<const float> ends) {
     const auto is_seen = [&](std::uint32_t number) {
-        const WideBox box(plan, bricks.bricks()[number].box);
-        const auto tiles = tiles_of(plan, box);
+        const VoxelBox& box = bricks.bricks()[number].box;
+        const auto tiles = tiles_of(plan, WideBox(plan, box));
         const double nearest = depths_of(plan, box).x;
         if (!tiles) return true;
         for (int y = tiles->y; y < tiles->w; ++y)

@@ -2,7 +2,7 @@
 // 4.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/tiles/tile_entries.glsl"
+#include "shaders/tiles_cpu/tile_entries.glsl"
 
 void main() {
     Block block = block_of_invocation();

@@ -1,8 +1,6 @@
-// Culls bricks that saturated tiles occlude: divides a frame into a front part and the rest, and tests which bricks of
-// the rest are still visible.
+// Culls bricks that surfaces or saturated tiles occlude.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,15 +8,8 @@
 
 namespace edgesplat {
 
-/// Bricks in view by number, ascending. Bricks that reach across the sheet are in both lists.
-struct FrontAndRest {
-    int sheet = 0;  ///< numbered from the eye on; about half of the splats are in front of it
-    std::vector<std::uint32_t> front, rest;
-};
-
-/// nullopt if the division would save little: fewer than `least` splats in view, large splats, or pixels that never
-/// saturate.
-std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least);
+/// Least and largest depth of the kernels of a box's voxels, mm from the eye.
+glm::dvec2 depths_of(const FramePlan& plan, const VoxelBox& box);
 
 /// Leaves out the bricks in view that lie behind the surfaces of a mixture. `ends`: FrameParams::tile_ends, row by row.
 void cull_behind(FramePlan& plan, const SplatBricks& bricks, std::span<const float> ends);
