@@ -1,4 +1,5 @@
-// Divides a frame into a front part and the rest, of which only bricks are drawn that the front part does not occlude.
+// Divides a frame into a front part and the rest. Of the rest, only bricks are drawn that the front part leaves
+// visible.
 #pragma once
 
 #include <optional>
