@@ -14,6 +14,7 @@ using uint = std::uint32_t;
 using vec2 = glm::dvec2;
 using vec3 = glm::dvec3;
 using vec4 = glm::dvec4;
+using ivec2 = glm::ivec2;
 using ivec3 = glm::ivec3;
 using mat3 = glm::dmat3;
 // GLSL's functions.
@@ -25,6 +26,7 @@ using glm::clamp;
 using glm::cos;
 using glm::cross;
 using glm::dot;
+using glm::exp;
 using glm::findLSB;
 using glm::greaterThan;
 using glm::greaterThanEqual;
@@ -38,6 +40,7 @@ using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::outerProduct;
+using glm::pow;
 using glm::roundEven;
 using glm::sign;
 using glm::sin;
@@ -79,6 +82,8 @@ EDGESPLAT_IN_DOUBLE(FIT_WALL)
 EDGESPLAT_IN_DOUBLE(FIT_WELL)
 EDGESPLAT_IN_DOUBLE(GRADIENT_MIN)
 EDGESPLAT_IN_DOUBLE(KERNEL_RADIUS)
+EDGESPLAT_IN_DOUBLE(LIT_FACES)
+EDGESPLAT_IN_DOUBLE(LIT_WITHIN)
 EDGESPLAT_IN_DOUBLE(MADE_UP)
 EDGESPLAT_IN_DOUBLE(OUTLINE_FAR2)
 EDGESPLAT_IN_DOUBLE(OUTLINE_NEAR2)
@@ -117,6 +122,7 @@ namespace {  // NOLINT(google-build-namespaces)
 #include "engine/geometry/edge.glsl"
 #include "engine/geometry/light_ray.glsl"
 #include "engine/geometry/low_pass.glsl"
+#include "engine/geometry/outline_place.glsl"
 #include "engine/geometry/quadric.glsl"
 #include "engine/geometry/surface_votes.glsl"
 // After what it uses.

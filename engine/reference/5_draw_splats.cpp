@@ -130,16 +130,6 @@ struct SeenSplat {
     }
 };
 
-/// Where a ray meets both faces of a layer, if both lie within LIT_FACES of p.
-std::optional<glm::dvec2> faces_near(const Quadratic& phi) {
-    const double root2 = phi.b * phi.b - 4 * phi.a * phi.c;
-    if (!(root2 > 0) || phi.a == 0) return std::nullopt;
-    const double sum = -0.5 * (phi.b + (phi.b < 0 ? -1 : 1) * std::sqrt(root2));
-    const double low = std::min(sum / phi.a, phi.c / sum), high = std::max(sum / phi.a, phi.c / sum);
-    const double near = static_cast<double>(shader::LIT_FACES);
-    return low > -near && high < near ? std::optional(glm::dvec2(low, high)) : std::nullopt;
-}
-
 }  // namespace
 
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
@@ -167,23 +157,14 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const glm::dvec3 normal = at_border ? inside.normal : glm::dvec3(0);
     if (at_border) f.entry.z = inside.low;
     if (payload != Payload::Color || !footprints.lit_in_depth(edge)) return seen.at(f.entry, normal, payload);
-    // Light falls on both ends of the path, within the part of the chord that has most of the kernel. `share`: weight
-    // of the far end, which is the farther half's share of the absorption.
-    const double half_chord =
-        static_cast<double>(shader::LIT_WITHIN) * std::sqrt(std::max(radius * radius - glm::dot(p, p), 0.0));
-    const bool to_border = inside.high < f.leave.z;
-    f.leave.z = std::max(std::min(std::min(inside.high, f.leave.z), half_chord), f.entry.z);
-    if (!at_border) f.entry.z = std::min(std::max(f.entry.z, -half_chord), f.leave.z);
-    const double tau =
-        record.extinction(scene) * glm::length(view.geometry.index_to_world_axes * u) * (f.leave.z - f.entry.z);
-    const double share = 1 / (1 + std::exp(0.5 * tau));
-    // Between the faces of a layer the field is monotone, but the quadric that has both as levels is not. So light
-    // falls on the faces themselves.
-    const auto faces = edge.mixed ? faces_near(seen.sight.ray.phi) : std::nullopt;
-    if (faces && !at_border) f.entry.z = std::min(f.entry.z, faces->x);
-    if (faces && !to_border) f.leave.z = std::max(f.leave.z, faces->y);
+    const double half_chord = std::sqrt(std::max(radius * radius - glm::dot(p, p), 0.0));
+    const double absorbs = record.extinction(scene) * glm::length(view.geometry.index_to_world_axes * u);
+    const auto path = seen.face.lit_path(f.entry.z, f.leave.z, at_border, inside.high, half_chord, absorbs, edge.mixed,
+                                         seen.sight.ray.phi);
+    f.entry.z = path.near;
+    f.leave.z = path.far;
     return glm::mix(seen.at(f.entry, normal, payload),
-                    seen.at(f.leave, to_border ? inside.far_normal : glm::dvec3(0), payload), share);
+                    seen.at(f.leave, path.to_border ? inside.far_normal : glm::dvec3(0), payload), path.share);
 }
 
 SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,

@@ -36,6 +36,7 @@ struct FaceGeometry {
     FaceForm face_form{};
 // After what it uses.
 #include "engine/geometry/face_sight.glsl"
+#include "engine/geometry/lit_path.glsl"
 #undef IF_ANY
 #undef INOUT
 

@@ -1,7 +1,5 @@
 #include "engine/reference/outlines.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/reference/face_geometry.h"
@@ -34,6 +32,25 @@ struct OutlineGeometry : FaceGeometry {
 #include "engine/geometry/outline.glsl"
 };
 
+/// A picture with one ray a pixel, and its outlines.
+struct OutlinedPicture {
+    std::span<const vec4> frame;
+    std::span<const std::optional<reference::Outline>> outlines;
+    ivec2 size;
+
+    std::size_t place(const ivec2& pixel) const {
+        const ivec2 held = clamp(pixel, ivec2(0), size - 1);
+        return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(held.x);
+    }
+    vec4 drawn_at(const ivec2& pixel) const { return frame[place(pixel)]; }
+    vec2 outline_offset(const ivec2& pixel) const {
+        const auto& outline = outlines[place(pixel)];
+        if (!outline || pixel != clamp(pixel, ivec2(0), size - 1)) return vec2(0);
+        return outline->down ? vec2(0, outline->offset) : vec2(outline->offset, 0);
+    }
+#include "engine/geometry/pixel_outline.glsl"
+};
+
 }  // namespace
 }  // namespace edgesplat::geometry
 
@@ -43,15 +60,13 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
-using glm::ivec2;
 
 /// The outline where `level` is 0; matter lies where it is negative. `rate`: change of `level` per pixel. nullopt if
 /// the outline is a pixel or more away.
 std::optional<Outline> outline_of_rate(double level, const dvec2& rate) {
-    const bool down = std::abs(rate.y) > std::abs(rate.x);
-    const double along = down ? rate.y : rate.x, pixels = level / std::abs(along);
-    if (!(std::abs(pixels) < 1)) return {};
-    return Outline{pixels, -level / along, down};
+    const geometry::OutlinePlace place = geometry::outline_place(level, rate);
+    if (!place.there) return {};
+    return Outline{place.level, place.offset, place.down};
 }
 
 }  // namespace
@@ -82,42 +97,12 @@ void keep_outer(std::optional<Outline>& kept, const std::optional<Outline>& foun
 
 std::vector<dvec4> smoothed(std::span<const dvec4> frame, std::span<const std::optional<Outline>> outlines, int width,
                             int height) {
-    const ivec2 last(width - 1, height - 1);
-    const auto place = [&](const ivec2& pixel) {
-        const ivec2 held = glm::clamp(pixel, ivec2(0), last);
-        return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(held.x);
-    };
-    const auto offset_at = [&](const ivec2& pixel) {
-        const auto& outline = outlines[place(pixel)];
-        if (!outline || pixel != glm::clamp(pixel, ivec2(0), last)) return dvec2(0);
-        return outline->down ? dvec2(0, outline->offset) : dvec2(outline->offset, 0);
-    };
-    std::vector<dvec4> out(frame.begin(), frame.end());
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const ivec2 pixel(x, y);
-            const dvec2 offset = offset_at(pixel);
-            ivec2 towards(0);
-            double nearest = 0.5;
-            for (const ivec2& step : {ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1)}) {
-                const double ours = glm::dot(offset, dvec2(step)),
-                             theirs = -glm::dot(offset_at(pixel + step), dvec2(step));
-                double at = 1;
-                if (ours > 0)
-                    at = theirs > 0 ? ours / (ours + theirs) : ours;
-                else if (theirs > 0 && offset == dvec2(0))
-                    at = 1 - theirs;
-                if (at >= nearest) continue;
-                nearest = at;
-                towards = step;
-            }
-            const dvec4 own = frame[place(pixel)], next = frame[place(pixel + towards)], difference = next - own;
-            const dvec4 here = own - frame[place(pixel - towards)], there = frame[place(pixel + 2 * towards)] - next;
-            const dvec4 jump = difference - nearest * here - (1 - nearest) * there;
-            out[place(pixel)] = own + (0.5 - nearest) * glm::clamp(jump, glm::min(difference, dvec4(0)),
-                                                                   glm::max(difference, dvec4(0)));
-        }
-    }
+    geometry::OutlinedPicture picture{frame, outlines, {width, height}};
+    std::vector<dvec4> out;
+    out.reserve(frame.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            out.push_back(picture.with_other_side(picture.drawn_at({x, y}), {x, y}));
     return out;
 }
 

@@ -26,7 +26,7 @@ void main() {
     vec4 sum = vec4(0.0);
     if (TILES == 1u) sum = load_pixel(at);
     else sum = texelFetch(accumulated, pixel, 0);
-    if (OUTLINES == 1u) sum = with_other_side(sum, pixel, size);
+    if (OUTLINES == 1u) sum = with_other_side(sum, pixel);
     if (PAYLOAD == PAYLOAD_COLOR) {
         vec3 behind = params.frame.background;
         if (GRADIENT == 1u) {

@@ -1,16 +1,17 @@
 // An outline in a pixel. The including shader declares the uniform block `params.frame`.
 #ifndef EDGESPLAT_OUTLINE_WORD_GLSL
 #define EDGESPLAT_OUTLINE_WORD_GLSL
+#include "footprints/in_float.glsl"
+#include "engine/geometry/outline_place.glsl"
 
 // Packs an outline. The matter lies where `level` < 0; `rate`: change of `level` per pixel to the right and down. Of
 // two words the smaller counts, since matter of either splat is matter of both.
 // Bits: level in pixels from -1 (12) | axis is down (1) | offset along the axis, pixels, from -1 (16)
 uint outline_word(float level, vec2 rate) {
-    bool down = abs(rate.y) > abs(rate.x);
-    float along = down ? rate.y : rate.x, pixels = level / abs(along), offset = -level / along;
-    uint word = uint(clamp(0.5 * pixels + 0.5, 0.0, 1.0) * 4095.0) << 17 | (down ? 1u << 16 : 0u) |
-                uint(clamp(0.5 * offset + 0.5, 0.0, 1.0) * 65535.0);
-    return abs(pixels) < 1.0 ? word : NO_OUTLINE;
+    OutlinePlace place = outline_place(level, rate);
+    uint word = uint(clamp(0.5 * place.level + 0.5, 0.0, 1.0) * 4095.0) << 17 | (place.down ? 1u << 16 : 0u) |
+                uint(clamp(0.5 * place.offset + 0.5, 0.0, 1.0) * 65535.0);
+    return place.there ? word : NO_OUTLINE;
 }
 
 // Change of a function with this gradient, at a depth (mm), from a pixel to the next to the right and to the next

@@ -55,7 +55,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     vec3 payload = vec3(0.0);
     if (PAYLOAD == PAYLOAD_COLOR) {
         bool has_normal = e.state >= (LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
-        payload = shade(Surface(material.rgb, splat.edge >> 28, lights_reach(number), has_normal, world_normal, ambient_reach(number, turned), world_from_eye, to_eye, depth));
+        payload = shade(Surface(material.rgb, response_of(splat.edge >> 28), lights_reach(number), has_normal, world_normal, ambient_reach(number, turned), world_from_eye, to_eye, depth));
     }
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
         float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;

@@ -15,6 +15,7 @@
 #include "shaders/common/clip_ray.glsl"
 #include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
+#include "engine/geometry/lit_path.glsl"
 #include "shaders/light/shading.glsl"
 
 // Whether a point lies in a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2:
@@ -56,7 +57,7 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
     vec3 to_eye = -normalize(params.frame.index_to_world * u);
-    return shade(Surface(matter, number_material.y & MATERIAL_BITS, lights_reach(number_material.x), true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
+    return shade(Surface(matter, response_of(number_material.y & MATERIAL_BITS), lights_reach(number_material.x), true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
 }
 
 // The piece of the pixel's ray in the volume. The volume's border cuts kernels as a face does. low, high: from the eye
@@ -97,7 +98,7 @@ vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead
     // Matter around the eye is seen right in front of it.
     float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, lights_reach(number_material.x), has_normal || at_border, world_normal,
+    return shade(Surface(color_sigma.rgb, response_of(number_material.y & MATERIAL_BITS), lights_reach(number_material.x), has_normal || at_border, world_normal,
                          ambient_reach(number_material.x, end.side < 0.0), away * way, -normalize(way), depth));
 }
 
@@ -112,17 +113,6 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
 }
 #include "shaders/footprints/tabulated_footprint.glsl"
 
-// The piece between the two faces of a layer between two iso-values, if the ray meets both nearby; else `way`, which
-// lies between them. Between the faces the field is monotonic, but the quadric with both as level sets turns.
-vec2 way_between_faces(Quadratic phi, vec2 way) {
-    float root2 = phi.b * phi.b - 4.0 * phi.a * phi.c;
-    float sum = -0.5 * (phi.b + (phi.b < 0.0 ? -1.0 : 1.0) * sqrt(max(root2, 0.0)));
-    vec2 ends = vec2(sum, phi.c) / divisible(vec3(phi.a, sum, 1.0)).xy;
-    float low = min(ends.x, ends.y), high = max(ends.x, ends.y);
-    bool both = root2 > 0.0 && low > -LIT_FACES && high < LIT_FACES;
-    return both ? vec2(min(way.x, low), max(way.y, high)) : way;
-}
-
 // Payload of the splat for a ray through it. In translucent matter light is evaluated in depth: the nearer half is lit
 // like the entry, the farther half like the exit.
 vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, float far_border, vec3 u, float ahead, float mm) {
@@ -136,20 +126,14 @@ vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, fl
     vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
     if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
     bool deep = !plain && (params.frame.translucent_mask >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
-    float half_chord = LIT_WITHIN * sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
-    bool to_border = far_border < f.leave.z;
-    float leave = max(min(to_border ? far_border : f.leave.z, half_chord), f.entry.z);
-    f.entry.z = deep && !at_border ? min(max(f.entry.z, -half_chord), leave) : f.entry.z;
-    f.leave.z = leave;
-    float share = 1.0 / (1.0 + exp(0.5 * color_sigma.a * mm * (leave - f.entry.z)));
-    if (deep && (number_material.y & IS_MIXED) != 0u) {
-        vec2 way = way_between_faces(sight.ray.phi, vec2(f.entry.z, leave));
-        f.entry.z = at_border ? f.entry.z : way.x;
-        f.leave.z = to_border ? leave : way.y;
-    }
+    bool layer = deep && (number_material.y & IS_MIXED) != 0u;
+    float half_chord = sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
+    LitPath path = lit_path(f.entry.z, f.leave.z, at_border, far_border, half_chord, color_sigma.a * mm, layer, sight.ray.phi);
+    f.entry.z = deep ? path.near : f.entry.z;
+    f.leave.z = path.far;
     vec3 near = face_payload(sight, f.entry, normal, u, ahead);
-    vec3 far = face_payload(sight, f.leave, to_border ? volume_piece.far_normal : vec3(0.0), u, ahead);
-    return deep ? mix(near, far, share) : near;
+    vec3 far = face_payload(sight, f.leave, path.to_border ? volume_piece.far_normal : vec3(0.0), u, ahead);
+    return deep ? mix(near, far, path.share) : near;
 }
 
 // (integral * payload, integral) of the ray within `slice`. `z`: voxel_depth_on_ray; `mm`: length of a voxel along u.

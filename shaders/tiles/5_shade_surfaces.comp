@@ -61,7 +61,7 @@ vec4 seen_of(SurfaceVotes votes, vec3 u) {
                            : votes.kind;
         color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];
     }
-    vec3 light = shade(Surface(color, material, lights_at(votes), dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));
+    vec3 light = shade(Surface(color, response_of(material), lights_at(votes), dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));
     return vec4(light, opacity);
 }
 
