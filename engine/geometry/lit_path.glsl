@@ -26,7 +26,7 @@ vec2 way_between_faces(Quadratic phi, Real near, Real far) {
 
 // `entry`, `leave`: where the ray enters and leaves the kernel's matter; `at_border`: it enters at the border.
 // `far_border`: where it leaves the volume. `half_chord`: half its way through the kernel. `absorbs`: optical depth per voxel.
-// `layer`: matter between two iso-values, of which phi is the quadric along the ray.
+// `layer`: this matter lies between two iso-values. phi: its quadric along the ray.
 LitPath lit_path(Real entry, Real leave, bool at_border, Real far_border, Real half_chord, Real absorbs, bool layer, Quadratic phi) {
     Real most = LIT_WITHIN * half_chord;  // most of the kernel
     LitPath path;
