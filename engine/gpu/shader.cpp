@@ -15,11 +15,12 @@ std::span<const std::uint32_t> find_shader(std::string_view name) {
 
 glm::uvec3 local_size(std::string_view name) {
     constexpr std::size_t kHeader = 5;
-    constexpr std::uint32_t kConstant = 43, kExecutionModeId = 331, kLocalSizeId = 38;
+    constexpr std::uint32_t kConstant = 43, kFunction = 54, kExecutionModeId = 331, kLocalSizeId = 38;
     const auto words = find_shader(name);
     glm::uvec3 ids(0), size(0);  // of the constants, which follow the execution mode
     for (std::size_t at = kHeader; at < words.size(); at += words[at] >> 16U) {
         const std::uint32_t instruction = words[at] & 0xffffU;
+        if (instruction == kFunction) break;
         if (instruction == kExecutionModeId && words[at + 2] == kLocalSizeId)
             ids = {words[at + 3], words[at + 4], words[at + 5]};
         for (int axis = 0; axis < 3; ++axis)
