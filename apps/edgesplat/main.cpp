@@ -17,7 +17,6 @@
 #include "apps/edgesplat/mpi_ranks.h"
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
-#include "engine/scene/removed.h"
 
 namespace {
 
@@ -62,12 +61,6 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     else
         fmt::print(stderr, "edgesplat: {}error: {}\n", ranks::label(), error.what());
     for (const std::string& argument : unexpected) {
-        const std::string option = argument.substr(0, argument.find('='));
-        const std::string removed = option.starts_with("--") ? edgesplat::removed_knob(option.substr(2)) : "";
-        if (!removed.empty()) {
-            fmt::print(stderr, "{} {}\n", option, removed);
-            continue;
-        }
         const std::string name = nearest_name(command, argument);
         if (!name.empty()) fmt::print(stderr, "Did you mean {}?\n", name);
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "engine/error.h"
-#include "engine/scene/removed.h"
 
 using edgesplat::SceneDocument;
 
@@ -35,8 +34,6 @@ void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
         .add_option_function<std::string>(
             "--renderer",
             [&edits](const std::string& text) {
-                if (const std::string removed = edgesplat::removed_step("renderer", text); !removed.empty())
-                    throw CLI::ValidationError("--renderer", fmt::format("'{}' {}", text, removed));
                 const auto kind =
                     named<edgesplat::RendererKind>(edgesplat::kRendererNames, "--renderer", "renderer", text);
                 edits.add([kind](SceneDocument& d) { d.output.renderer = kind; });

@@ -12,30 +12,23 @@ std::vector<std::uint32_t> quad_indices() {
 }
 
 gpu::Specialization draw_constants(const DrawVariant& variant) {
-    return {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
-            {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
-            {shader::SPEC_NARROW, variant.narrow ? 1U : 0U},
-            {shader::SPEC_LIGHT, variant.lights},
-            {shader::SPEC_PAYLOAD, variant.payload},
-            {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
-            {shader::SPEC_NODES, variant.nodes},
-            {shader::SPEC_TRANSFER, variant.transfer ? 1U : 0U},
-            {shader::SPEC_LABELS, variant.labels},
-            {shader::SPEC_RESPONSE, variant.response ? 1U : 0U},
-            {shader::SPEC_GLOSS, variant.gloss ? 1U : 0U},
-            {shader::SPEC_LIT_EDGES, variant.lit_edges ? 1U : 0U},
-            {shader::SPEC_SILHOUETTE, variant.silhouette ? 1U : 0U},
-            {shader::SPEC_FOG, variant.fog ? 1U : 0U},
-            {shader::SPEC_OCCLUSION, variant.occlusion ? 1U : 0U},
-            {shader::SPEC_SHADOWS, variant.shadows},
-            {shader::SPEC_CLIP_KEEP, variant.clip.keep},
-            {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
-            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
-            {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
-            {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
-            {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
-            {shader::SPEC_ISO_COUNT, variant.iso_count},
-            {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
+    gpu::Specialization constants{{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
+                                  {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
+                                  {shader::SPEC_NARROW, variant.narrow ? 1U : 0U},
+                                  {shader::SPEC_PAYLOAD, variant.payload},
+                                  {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
+                                  {shader::SPEC_NODES, variant.nodes},
+                                  {shader::SPEC_SHADOWS, variant.shadows},
+                                  {shader::SPEC_CLIP_KEEP, variant.clip.keep},
+                                  {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+                                  {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
+                                  {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
+                                  {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
+                                  {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
+                                  {shader::SPEC_ISO_COUNT, variant.iso_count},
+                                  {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
+    constants.insert(constants.end(), variant.shading.begin(), variant.shading.end());
+    return constants;
 }
 
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group) {

@@ -9,31 +9,23 @@
 
 namespace edgesplat::passes {
 
-/// Pipeline variant of the draw: every member is a specialization constant.
+/// Pipeline variant of the draw: every member becomes specialization constants.
 struct DrawVariant {
     FootprintMode footprints;
     WarpFamily warp;
     bool narrow = false;              ///< narrow kernels
-    std::uint32_t lights = 0;         ///< number of lights
     std::uint32_t payload = 0;        ///< shader::PAYLOAD_*
     bool sliced = false;              ///< kernels are cut at the sheets' planes
-    bool occlusion = false;           ///< ambient light is reduced by 2b_occlude_ambient
     std::uint32_t shadows = 0;        ///< number of lights with shadows
     std::uint32_t nodes = kFewNodes;  ///< quadrature nodes per piece of a footprint: 4, 6 or 10
-    bool transfer = false;            ///< colour and extinction are from a transfer function
-    std::uint32_t labels = 0;         ///< SPEC_LABELS: every label has its own colour
-    bool response = false;            ///< materials have their own light responses
-    bool gloss = false;               ///< some materials have highlights
-    bool lit_edges = false;           ///< splats without an edge are shaded as if without a normal
-    bool silhouette = false;
-    bool fog = false;
-    ClipCount clip{};             ///< kernels are cut at clip planes
-    bool opaque = false;          ///< only the longer of a ray's two pieces in a cut kernel counts
-    bool creases = false;         ///< kernels are also cut at creases: planes beside faces
-    bool surfaces = false;        ///< surface splats, drawn by 5_draw_surfaces
-    bool mixed = false;           ///< surface splats draw opaque matter, kernels translucent matter in front of it
-    bool several = false;         ///< with `mixed`: the surfaces are those of several volumes
-    std::uint32_t iso_count = 1;  ///< number of iso-values; only with surface splats
+    gpu::Specialization shading;      ///< what colours depend on, by constants that nothing else depends on
+    ClipCount clip{};                 ///< kernels are cut at clip planes
+    bool opaque = false;              ///< only the longer of a ray's two pieces in a cut kernel counts
+    bool creases = false;             ///< kernels are also cut at creases: planes beside faces
+    bool surfaces = false;            ///< surface splats, drawn by 5_draw_surfaces
+    bool mixed = false;               ///< surface splats draw opaque matter, kernels translucent matter in front of it
+    bool several = false;             ///< with `mixed`: the surfaces are those of several volumes
+    std::uint32_t iso_count = 1;      ///< number of iso-values; only with surface splats
     bool begins = false;     ///< with surface splats: rays may enter the volume, or what clip planes keep, in matter
     bool traced = false;     ///< rays find the faces of flagged splats, whose quadric does not fit
     bool antialias = false;  ///< footprints are at least a pixel wide

@@ -106,42 +106,51 @@ bool has_own_response(const Material& material) {
     return r.ambient != usual.ambient || r.diffuse != usual.diffuse || r.specular != usual.specular;
 }
 
-/// Fills in the shading parameters: lights, material responses, effects.
-void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3& eye, FramePlan& plan) {
+/// Fills in what colours depend on: lights, material responses, effects, the transfer function, labels.
+void plan_shading(const Scene& scene, const Volume& volume, const Settings& settings, const glm::dvec3& eye,
+                  FramePlan& plan) {
     auto& variant = plan.variant;
     auto& p = plan.params;
-    variant.lights = static_cast<std::uint32_t>(scene.lights.size());
     p.ambient = static_cast<float>(scene.ambient);
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
         const Light& light = scene.lights[l];
         p.light_at[l] = place_of(light, eye);
         p.light_color[l] = glm::vec4(to_float(light.color * light.intensity), 0);
     }
+    bool response = false, gloss = false;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const Material& material = scene.materials[m];
         const LightResponse& r = material.response;
         p.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
         if (scene.lights.empty() || !(extinctions_of(scene, m).most > 0)) continue;
-        variant.response = variant.response || has_own_response(material);
-        variant.gloss = variant.gloss || r.specular > 0;
+        response = response || has_own_response(material);
+        gloss = gloss || r.specular > 0;
     }
     if (const auto& silhouette = scene.effects.silhouette) {
-        variant.silhouette = true;
         p.silhouette = glm::dvec4(silhouette->color, silhouette->strength);
         p.silhouette_sharpness = static_cast<float>(silhouette->sharpness);
     }
     if (const auto& fog = scene.effects.fog) {
-        variant.fog = true;
         p.fog = glm::dvec4(fog->color, fog->density);
         p.fog_start = static_cast<float>(fog->start);
     }
-    if (occludes_ambient(scene)) {
-        variant.occlusion = true;
-        p.occlusion_strength = static_cast<float>(scene.effects.occlusion->strength);
-    }
-    variant.shadows = static_cast<std::uint32_t>(shadow_lights(scene).size());
+    const bool occluded = occludes_ambient(scene);
+    if (occluded) p.occlusion_strength = static_cast<float>(scene.effects.occlusion->strength);
+    const bool color = variant.payload == shader::PAYLOAD_COLOR;
+    variant.shadows = color ? static_cast<std::uint32_t>(shadow_lights(scene).size()) : 0;
     p.shadow_channels = shadow_channels(scene);
-    variant.lit_edges = needs_normals(scene) && lights_edges_only(scene, draws_warped(settings));
+    const bool lit_edges = needs_normals(scene) && lights_edges_only(scene, draws_warped(settings));
+    const std::uint32_t labels = labels_drawn(scene, volume);
+    if (labels != 0) plan.label_colors = label_colors(scene);
+    variant.shading = {{shader::SPEC_LIGHT, color ? static_cast<std::uint32_t>(scene.lights.size()) : 0},
+                       {shader::SPEC_RESPONSE, color && response ? 1 : 0},
+                       {shader::SPEC_GLOSS, color && gloss ? 1 : 0},
+                       {shader::SPEC_LIT_EDGES, color && lit_edges ? 1 : 0},
+                       {shader::SPEC_SILHOUETTE, color && scene.effects.silhouette ? 1 : 0},
+                       {shader::SPEC_FOG, color && scene.effects.fog ? 1 : 0},
+                       {shader::SPEC_OCCLUSION, color && occluded ? 1 : 0},
+                       {shader::SPEC_TRANSFER, scene.transfer.empty() ? 0 : 1},
+                       {shader::SPEC_LABELS, labels}};
 }
 
 void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shader::MAX_CLIP_PLANES]) {
@@ -425,10 +434,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                    settings.pixels == PixelChoice::Refined &&
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.may_refine = plan.refined;
-    plan.variant.transfer = !scene.transfer.empty();
-    plan.variant.labels = labels_drawn(scene, volume);
-    if (plan.variant.labels != 0) plan.label_colors = label_colors(scene);
-    if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
+    plan_shading(scene, volume, settings, view.eye, plan);
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;

@@ -8,7 +8,6 @@
 
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
-#include "engine/scene/removed.h"
 #include "engine/scene/text_file.h"
 
 namespace edgesplat {
@@ -109,8 +108,6 @@ std::string SceneKey::refusal(const KeyValue& value) const {
         return choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end();
     };
     const auto suggestion = [this](const std::string& text) -> std::string {
-        if (const std::string removed = removed_step(path, text); !removed.empty())
-            return fmt::format("; \"{}\" {}", text, removed);
         const std::string name = nearest_name(text, choices);
         return name.empty() ? "" : "; did you mean \"" + name + "\"?";
     };
@@ -199,8 +196,6 @@ KeyAddress key_address(std::string_view concrete) {
 }
 
 std::string unknown_key(std::string_view concrete) {
-    std::string removed = removed_knob(concrete);
-    if (!removed.empty()) return removed;
     const std::string nearest = nearest_key(concrete);
     return nearest.empty() ? "unknown key" : "unknown key; did you mean " + nearest + "?";
 }

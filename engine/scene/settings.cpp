@@ -4,7 +4,6 @@
 #include <string>
 
 #include "engine/error.h"
-#include "engine/scene/removed.h"
 #include "engine/scene/scene.h"
 #include "footprints/face.h"
 #include "footprints/paper_warp.h"
@@ -23,14 +22,13 @@ constexpr std::array<std::string_view, 2> kOpaqueMatter{"kernels", "surfaces"};
 constexpr std::array<std::string_view, 2> kPixelChoices{"refined", "every"};
 
 template <typename Enum>
-Enum named(std::string_view name, const char* knob, const char* what, std::span<const std::string_view> names) {
+Enum named(std::string_view name, const char* what, std::span<const std::string_view> names) {
     std::string known;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i] == name) return static_cast<Enum>(i);
         known += (i == 0 ? "" : ", ") + std::string(names[i]);
     }
-    const std::string removed = removed_step(knob, name);
-    fail("unknown {} '{}', expected one of: {}{}", what, name, known, removed.empty() ? "" : "; it " + removed);
+    fail("unknown {} '{}', expected one of: {}", what, name, known);
 }
 
 template <typename Enum>
@@ -45,25 +43,25 @@ void check(const char* field, double value, bool in_range, const char* range) {
 }  // namespace
 
 EdgeEstimator edge_estimator_named(std::string_view name) {
-    return named<EdgeEstimator>(name, "edges", "edge estimator", kEdgeEstimators);
+    return named<EdgeEstimator>(name, "edge estimator", kEdgeEstimators);
 }
 FootprintMode footprint_mode_named(std::string_view name) {
-    return named<FootprintMode>(name, "footprints", "footprint mode", kFootprintModes);
+    return named<FootprintMode>(name, "footprint mode", kFootprintModes);
 }
 WarpFamily warp_family_named(std::string_view name) {
-    return named<WarpFamily>(name, "warp", "warp family", kWarpFamilies);
+    return named<WarpFamily>(name, "warp family", kWarpFamilies);
 }
 SheetCut sheet_cut_named(std::string_view name) {
-    return named<SheetCut>(name, "sheets", "kind of sheets", kSheetCuts);
+    return named<SheetCut>(name, "kind of sheets", kSheetCuts);
 }
 SheetFormat sheet_format_named(std::string_view name) {
-    return named<SheetFormat>(name, "sheet-format", "sheet format", kSheetFormats);
+    return named<SheetFormat>(name, "sheet format", kSheetFormats);
 }
 OpaqueMatter opaque_matter_named(std::string_view name) {
-    return named<OpaqueMatter>(name, "opaque", "way to draw opaque matter", kOpaqueMatter);
+    return named<OpaqueMatter>(name, "way to draw opaque matter", kOpaqueMatter);
 }
 PixelChoice pixel_choice_named(std::string_view name) {
-    return named<PixelChoice>(name, "pixels", "choice of pixels", kPixelChoices);
+    return named<PixelChoice>(name, "choice of pixels", kPixelChoices);
 }
 
 std::string_view name_of(EdgeEstimator value) {

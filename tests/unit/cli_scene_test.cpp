@@ -162,19 +162,6 @@ file = "b.exr"
     EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
 }
 
-TEST_F(CliScene, SuggestsReplacementsForRemovedKeys) {
-    const ImageMetadata metadata{{"edgesplat:scene", R"([volume]
-path = "builtin:sphere:24"
-[quality]
-warp = "edge"
-edge_strength = 16
-)"}};
-    write("old.png", encode_png(Image(4, 4, 3), metadata));
-    EXPECT_THAT(run("rerun old.png --check").err,
-                AllOf(HasSubstr("old.png (edgesplat:scene)"), HasSubstr("\"edge\" was removed; write face"),
-                      HasSubstr("quality.edge_strength: was removed")));
-}
-
 TEST_F(CliScene, OptionsOverrideTheScene) {
     write("a.toml",
           "background = [0, 0, 1]\n[volume]\npath = \"builtin:sphere:24\"\n[camera]\neye = [12, -40, 12]\n"

@@ -9,10 +9,8 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <tuple>
 
 #include "engine/error.h"
-#include "engine/scene/removed.h"
 #include "tests/unit/refusal.h"
 
 namespace edgesplat {
@@ -86,23 +84,6 @@ TEST(Ladder, RefusalsNameGivenAndExpectedValues) {
             EXPECT_THAT(message, HasSubstr(std::string(value))) << knob.name;
         for (const std::string_view bad : {"", " ", "Off", "WHOLE", "march "})
             EXPECT_NE(refusal([&] { knob.set(settings, bad); }), "") << knob.name << " '" << bad << "'";
-    }
-}
-
-TEST(Ladder, SuggestsReplacementsForRemovedSteps) {
-    for (const auto& [knob, step, instead] : {std::tuple{"warp", "edge", "write face"},
-                                              {"edges", "quadratic", "write march"},
-                                              {"sheet-format", "half", "write layers"},
-                                              {"sheet-format", "float", "write layers"},
-                                              {"footprints", "table-lerp", "write table"}}) {
-        Settings settings;
-        EXPECT_THAT(refusal([&] { knob_named(knob).set(settings, step); }),
-                    AllOf(HasSubstr(step), HasSubstr("was removed"), HasSubstr(instead)));
-    }
-    for (const Knob& knob : ladder()) {
-        EXPECT_EQ(removed_knob(knob.name), "") << knob.name;
-        for (const std::string_view value : values_of(knob))
-            EXPECT_EQ(removed_step(knob.name, value), "") << knob.name << " " << value;
     }
 }
 
