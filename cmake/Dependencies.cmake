@@ -64,9 +64,10 @@ endif()
 
 if(EDGESPLAT_TESTS)
     find_package(GTest REQUIRED)
-    # Tests write volumes through ITK. Named components: otherwise ITK loads every module of its build. Its use file
+    # Tests write volumes and transforms through ITK. Named components: otherwise ITK loads every module of its build. Its use file
     # registers factories per directory; an interface target holds its settings instead.
-    find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK ITKIOGIPL)
+    find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK ITKIOGIPL
+        ITKTransform ITKIOTransformBase ITKIOTransformInsightLegacy ITKIOTransformHDF5 ITKIOTransformMatlab)
     add_library(edgesplat_itk INTERFACE)
     target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
     target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})

@@ -116,8 +116,8 @@ std::string scene_of_picture(const PictureRequest& request, const edgesplat::Vol
     edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
     const auto record = [&](edgesplat::VolumeSource& recorded) {
         recorded.path = recorded_path(request, recorded.path);
-        recorded.label_names = recorded_file(request, recorded.label_names);
-        recorded.segmentation = recorded_file(request, recorded.segmentation);
+        for (std::string* file : recorded.other_files())
+            *file = recorded_file(request, *file);
     };
     record(document.volume);
     for (edgesplat::SceneDocument& entry : document.volumes)

@@ -156,7 +156,7 @@ void add_volume(SceneDocument& document, const SceneDocument& other, const std::
     entry.transfer_preset = other.transfer_preset;
     std::string& path = entry.volume.path;
     if (!edgesplat::is_builtin(path)) path = place(edgesplat::find_volume(path, folders));
-    for (std::string* file : {&entry.volume.segmentation, &entry.volume.label_names})
+    for (std::string* file : entry.volume.other_files())
         if (!file->empty()) *file = place(edgesplat::find_file(*file, folders).string());
 }
 

@@ -43,7 +43,7 @@ std::string path_in_scene(const std::string& path, const fs::path& folder) {
 void place_in_scene(edgesplat::VolumeSource& volume, const std::vector<fs::path>& folders, const fs::path& folder) {
     if (!edgesplat::is_builtin(volume.path))
         volume.path = path_in_scene(edgesplat::find_volume(volume.path, folders), folder);
-    for (std::string* file : {&volume.label_names, &volume.segmentation})
+    for (std::string* file : volume.other_files())
         if (!file->empty()) *file = path_in_scene(*file, folder);
 }
 

@@ -29,6 +29,11 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
                     "Names and colours of labels: a Slicer colour table, an ITK-SNAP label description, a FreeSurfer "
                     "lookup table, or a table with the columns id and name")
         ->type_name("FILE");
+    command
+        .add_option("--registration", options.registration,
+                    "Result of a registration with this volume as the moving image, whose inverse moves the volume: a "
+                    "rigid or affine transform of ITK (.tfm, .txt, .h5, or .mat of ANTs)")
+        ->type_name("FILE");
 }
 
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
@@ -39,6 +44,7 @@ void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (!options.raw.empty()) source.raw = options.raw;
     if (!options.segmentation.empty()) source.segmentation = options.segmentation;
     if (!options.label_names.empty()) source.label_names = options.label_names;
+    if (!options.registration.empty()) source.registration = options.registration;
     if (options.resample) source.resample = true;
     if (options.no_data) source.no_data = options.no_data;
     if (options.spacing.size() == 3)

@@ -20,6 +20,7 @@ struct VolumeOptions {
     std::optional<double> no_data;  ///< --no-data
     std::string segmentation;       ///< --segmentation
     std::string label_names;        ///< --label-names
+    std::string registration;       ///< --registration
 };
 
 /// Adds --raw, --component, --frame, --level, --series, --resample, --spacing, --no-data, --segmentation and

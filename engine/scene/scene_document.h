@@ -2,6 +2,7 @@
 // `resolve_camera` choose omitted values from the data once the volume is loaded.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -35,6 +36,7 @@ struct VolumeSource {
     std::vector<std::string> only, hide;            ///< labels that are shown, or hidden (chosen_labels)
     std::string segmentation;                       ///< whose labels colour the volume (add_segmentation); empty: none
     std::string label_names;                        ///< file with names and colours of labels; empty: none
+    std::string registration;                       ///< file of an ITK transform, whose inverse moves it; empty: none
     bool box_filter = false;                        ///< mean over 3x3x3 voxels
     std::optional<glm::ivec3> crop_low, crop_high;  ///< first and last voxel kept; both or none
     std::vector<double> transform;  ///< 4 x 4, row by row: moves the volume in the world; empty: not moved
@@ -43,6 +45,9 @@ struct VolumeSource {
     VolumeRule rule = VolumeRule::Add;
     std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
     bool operator==(const VolumeSource&) const = default;
+
+    /// The files beside the volume's own; empty ones are not given.
+    std::array<std::string*, 3> other_files() { return {&segmentation, &label_names, &registration}; }
 };
 
 /// A material. Omitted values come from its preset or from the defaults of `resolve_scene`.

@@ -86,6 +86,11 @@ void add_volume(KeyTable& t) {
           {.unit = "voxels", .help = "Step 3: crop, first voxel to keep", .range = {0, 65535}, .absent = "the first"});
     t.add("volume.crop_high", MEMBER(volume.crop_high),
           {.unit = "voxels", .help = "Last voxel to keep", .range = {0, 65535}, .absent = "the last"});
+    t.add(
+        "volume.registration", MEMBER(volume.registration),
+        {.help = "Result of a registration with this volume as the moving image: its inverse moves the volume. A rigid "
+                 "or affine transform of ITK: .tfm, .txt, .h5, or .mat of ANTs; relative to the scene file",
+         .absent = "none"});
     t.add("volume.transform", MEMBER(volume.transform),
           {.count = 16,
            .unit = "mm",

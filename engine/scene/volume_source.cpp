@@ -10,6 +10,7 @@
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/itk_transform.h"
 #include "engine/volume/label_names.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
@@ -69,6 +70,25 @@ std::string find_volume(const std::string& path, const std::vector<fs::path>& fo
          places);
 }
 
+namespace {
+
+glm::dmat4 matrix_of_rows(const std::vector<double>& rows) {
+    glm::dmat4 matrix(1);
+    for (int i = 0; i < 16; ++i)
+        matrix[i % 4][i / 4] = rows[static_cast<std::size_t>(i)];
+    const double volume = glm::determinant(glm::dmat3(matrix));
+    if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1) || volume == 0 || !std::isfinite(volume))
+        fail("volume.transform: expected a 4 x 4 matrix that can be inverted, with 0, 0, 0, 1 as its last row");
+    return matrix;
+}
+
+void move(VolumeGeometry& geometry, const glm::dmat4& matrix) {
+    geometry.origin = glm::dvec3(matrix * glm::dvec4(geometry.origin, 1));
+    geometry.index_to_world_axes = glm::dmat3(matrix) * geometry.index_to_world_axes;
+}
+
+}  // namespace
+
 Volume read_source(const VolumeSource& source, const std::vector<fs::path>& folders, const LoadProgress& progress) {
     LoadOptions options;
     options.component = source.component;
@@ -90,6 +110,9 @@ Volume read_source(const VolumeSource& source, const std::vector<fs::path>& fold
         add_segmentation(volume, load_volume(find_volume(source.segmentation, folders), {}));
     }
     if (!source.label_names.empty()) name_labels(volume, find_file(source.label_names, folders));
+    // A registration leads from the fixed image to this one.
+    if (!source.registration.empty())
+        move(volume.geometry, glm::inverse(read_itk_transform(find_file(source.registration, folders))));
     return volume;
 }
 
@@ -200,22 +223,6 @@ void put_numbers(Volume& volume) {
 
 }  // namespace
 
-namespace {
-
-/// Moves a volume by a 4 x 4 matrix, row by row.
-void move(VolumeGeometry& geometry, const std::vector<double>& matrix) {
-    const glm::dmat3 axes(matrix[0], matrix[4], matrix[8], matrix[1], matrix[5], matrix[9], matrix[2], matrix[6],
-                          matrix[10]);
-    const double volume = glm::determinant(axes);
-    const bool affine = matrix[12] == 0 && matrix[13] == 0 && matrix[14] == 0 && matrix[15] == 1;
-    if (!affine || volume == 0 || !std::isfinite(volume))
-        fail("volume.transform: expected a 4 x 4 matrix that can be inverted, with 0, 0, 0, 1 as its last row");
-    geometry.origin = axes * geometry.origin + glm::dvec3(matrix[3], matrix[7], matrix[11]);
-    geometry.index_to_world_axes = axes * geometry.index_to_world_axes;
-}
-
-}  // namespace
-
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
     const bool chosen = chooses_labels(source), drawn = source.labels.value_or(chosen);
@@ -240,7 +247,7 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
     if (source.crop_low || source.crop_high)
         volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
                          source.crop_high.value_or(volume.geometry.dims - 1));
-    if (!source.transform.empty()) move(volume.geometry, source.transform);
+    if (!source.transform.empty()) move(volume.geometry, matrix_of_rows(source.transform));
     volume.warnings = warnings;
     const std::string checksum = fmt::format("{:016x}", volume.checksum);
     if (!source.checksum.empty() && source.checksum != checksum)

@@ -21,7 +21,7 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
         out.folders = volume_folders({});
     }
     const auto settle = [&](VolumeSource& source) {
-        for (std::string* file : {&source.label_names, &source.segmentation})
+        for (std::string* file : source.other_files())
             if (!file->empty()) *file = std::filesystem::absolute(find_file(*file, out.folders)).string();
     };
     settle(out.document.volume);

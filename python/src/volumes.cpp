@@ -205,6 +205,7 @@ VolumeSource reading_part(const VolumeSource& source) {
     part.no_data = source.no_data;
     part.segmentation = source.segmentation;
     part.label_names = source.label_names;
+    part.registration = source.registration;
     return part;
 }
 

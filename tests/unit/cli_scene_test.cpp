@@ -162,6 +162,22 @@ file = "b.exr"
     EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
 }
 
+TEST_F(CliScene, RegistrationsPlaceTheMovingVolume) {
+    write("to_moving.tfm",
+          "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\n"
+          "Parameters: 1 0 0 0 1 0 0 0 1 3 0 -2\nFixedParameters: 0 0 0\n");
+    const std::string view = " --size 20x16 --eye 10,-40,12 --direction 0,1,0 --up 0,0,1 -o ";
+    good("render builtin:sphere:24 --registration to_moving.tfm" + view + "a.png");
+    good("render builtin:sphere:24 --set volume.transform=1,0,0,-3,0,1,0,0,0,0,1,2,0,0,0,1" + view + "b.png");
+    good("render builtin:sphere:24" + view + "c.png");
+    EXPECT_EQ(picture("a.png").pixels, picture("b.png").pixels);
+    EXPECT_NE(picture("a.png").pixels, picture("c.png").pixels);
+    EXPECT_EQ(run("rerun a.png --check").status, 0) << "the picture records the registration";
+    const ProgramRun refused = run("render builtin:sphere:24 --registration none.tfm" + view + "d.png");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err, HasSubstr("none.tfm"));
+}
+
 TEST_F(CliScene, OptionsOverrideTheScene) {
     write("a.toml",
           "background = [0, 0, 1]\n[volume]\npath = \"builtin:sphere:24\"\n[camera]\neye = [12, -40, 12]\n"

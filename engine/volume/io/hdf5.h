@@ -111,6 +111,8 @@ class Hdf5File {
     std::optional<std::vector<double>> find_numbers(const std::string& path, const std::string& name) const;
     /// The text of an attribute, or all its texts joined; nullopt if it is missing or not a text.
     std::optional<std::string> find_text(const std::string& path, const std::string& name) const;
+    /// The one text that a dataset holds.
+    std::string text_dataset(const std::string& path) const;
     /// `cache`: bytes of unpacked chunks to keep for later reads; 0: HDF5's default.
     Hdf5Dataset dataset(const std::string& path, std::size_t cache = 0) const;
     /// Creates missing parent groups.

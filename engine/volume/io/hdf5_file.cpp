@@ -429,12 +429,11 @@ std::optional<std::vector<double>> Hdf5File::find_numbers(const std::string& pat
     return values;
 }
 
-std::optional<std::string> Hdf5File::find_text(const std::string& path, const std::string& name) const {
-    const Quiet quiet;
-    if (H5Aexists_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
-    const Hdf5Id id(H5Aopen_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    if (!id) return std::nullopt;
-    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+namespace {
+
+/// The texts of an attribute or dataset, joined; nullopt if it holds none. `read(type, out)`: H5Aread or H5Dread.
+template <typename Read>
+std::optional<std::string> joined_texts(const Hdf5Id& stored, const Hdf5Id& extent, const Read& read) {
     constexpr hssize_t kMost = 65536;
     const auto count = H5Sget_simple_extent_npoints(extent.get());
     if (H5Tget_class(stored.get()) != H5T_STRING || count < 1 || count > kMost) return std::nullopt;
@@ -442,7 +441,7 @@ std::optional<std::string> Hdf5File::find_text(const std::string& path, const st
     if (H5Tis_variable_str(stored.get()) > 0) {
         const Hdf5Id memory(H5Tcopy(stored.get()), H5Tclose);
         std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
-        if (H5Aread(id.get(), memory.get(), static_cast<void*>(texts.data())) < 0) return std::nullopt;
+        if (read(memory.get(), static_cast<void*>(texts.data())) < 0) return std::nullopt;
         for (const char* part : texts)
             if (part != nullptr) text += part;
         H5Dvlen_reclaim(memory.get(), extent.get(), H5P_DEFAULT, static_cast<void*>(texts.data()));
@@ -451,10 +450,36 @@ std::optional<std::string> Hdf5File::find_text(const std::string& path, const st
     const std::size_t size = H5Tget_size(stored.get());
     if (size < 1 || size > static_cast<std::size_t>(kMost)) return std::nullopt;
     std::string raw(size * static_cast<std::size_t>(count), '\0');
-    if (H5Aread(id.get(), stored.get(), raw.data()) < 0) return std::nullopt;
+    if (read(stored.get(), static_cast<void*>(raw.data())) < 0) return std::nullopt;
     for (const char c : raw)
         if (c != '\0') text += c;
     return text;
+}
+
+}  // namespace
+
+std::optional<std::string> Hdf5File::find_text(const std::string& path, const std::string& name) const {
+    const Quiet quiet;
+    if (H5Aexists_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
+    const Hdf5Id id(H5Aopen_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!id) return std::nullopt;
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    return joined_texts(stored, extent, [&](hid_t type, void* out) { return H5Aread(id.get(), type, out); });
+}
+
+std::string Hdf5File::text_dataset(const std::string& path) const {
+    const Quiet quiet;
+    if (!has(path)) fail("{}: {}: missing", path_, path);
+    const Hdf5Id id(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    std::optional<std::string> text;
+    if (id) {
+        const Hdf5Id stored(H5Dget_type(id.get()), H5Tclose), extent(H5Dget_space(id.get()), H5Sclose);
+        text = joined_texts(stored, extent, [&](hid_t type, void* out) {
+            return H5Dread(id.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
+        });
+    }
+    if (!text) fail("{}: {}: expected a text", path_, path);
+    return *text;
 }
 
 Hdf5Dataset Hdf5File::dataset(const std::string& path, std::size_t cache) const {
