@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/frame/tiles/tile_passes.h"
+#include "engine/frame/tiles_cpu/lists.h"
 #include "engine/passes/4_sort_tiles.h"
 #include "tests/passes/pass_fixture.h"
 
@@ -366,6 +367,45 @@ TEST(RefinePixels, GivesTheSamePictureInManyChunks) {
             EXPECT_LE(most, 2e-6F) << "chunks of " << limit << " pairs, extinction " << extinction;
         }
     }
+}
+
+/// The buffers with data per entry may differ in size: earlier pictures may have enlarged only some of them.
+TEST(KeptLists, FitIntoEveryBuffer) {
+    const gpu::Device& device = device_under_test().device();
+    const auto buffer = [&](std::uint64_t bytes) {
+        return gpu::Buffer(device, bytes, gpu::Buffer::Place::Host, "test");
+    };
+    constexpr std::uint64_t kRoom = 320;
+    TargetResources targets;
+    targets.tile_entries = buffer(1000 * sizeof(glm::uvec2));
+    targets.tile_marks = buffer(1000 * sizeof(std::uint32_t));
+    targets.traced_entries = buffer(kRoom / shader::MARKED_AT_ONCE * sizeof(std::uint32_t));
+    targets.frame = buffer(sizeof(shader::FrameParams));
+    targets.tile_ranges = buffer(sizeof(glm::uvec2));
+    targets.tile_todo = buffer(sizeof(std::uint32_t));
+    targets.tile_closed_on_host = buffer(sizeof(std::uint32_t));
+    FramePlan plan;
+    plan.params.tiles = {1, 1};
+    const auto first = [&] { return targets.frame.mapped<shader::FrameParams>(1)[0].entries_first; };
+    const auto list = [&](std::uint32_t length) { targets.tile_ranges.mapped<glm::uvec2>(1)[0] = {0, length}; };
+    targets.tile_todo.mapped<std::uint32_t>(1)[0] = 1;
+    targets.tile_closed_on_host.mapped<std::uint32_t>(1)[0] = 0;
+
+    KeptLists kept(plan, targets, 3);
+    kept.place(0, 100);
+    EXPECT_EQ(first(), 0U);
+    list(100);
+    kept.keep(0);
+    kept.place(1, 90);
+    EXPECT_EQ(first(), 128U) << "behind the first, at the beginning of a word of marks";
+    list(90);
+    kept.keep(1);
+    EXPECT_TRUE(kept.take(0) && kept.take(1));
+    EXPECT_EQ(first(), 128U);
+    kept.place(2, 150);
+    EXPECT_EQ(first(), 160U) << "the smallest buffer has room for 320 entries";
+    EXPECT_TRUE(kept.take(0));
+    EXPECT_FALSE(kept.take(1)) << "its place was used again";
 }
 
 }  // namespace

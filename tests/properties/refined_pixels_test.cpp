@@ -169,25 +169,5 @@ TEST(RefinedPixels, AreAllDrawnInAPictureOfAFewPixels) {
     }
 }
 
-/// In a large picture without traced faces, the lists have more room than the record of traced entries, which was
-/// allocated before.
-TEST(RefinedPixels, KeepTheirListsOnlyIfAllRecordsFit) {
-    Renderer renderer({.device = test_renderer().device().name, .validation = true});
-    if (!renderer.device().is_processor) GTEST_SKIP() << "this device does not detect writes beyond buffers";
-    const AnalyticScene waves = analytic_scene("gyroid");
-    const auto volume = std::make_shared<const Volume>(sample(waves));
-    renderer.set_volume(volume);
-    Scene scene;
-    scene.iso_values = waves.iso_values;
-    scene.materials = {{}, {{1, 0.85, 0.7}, 4}};
-    const Camera camera = look(*volume, {21, 3, 19}, {20, 20, 20}, 70);
-    Settings plain, faces;
-    plain.edges = EdgeEstimator::Off;
-    faces.sheets = SheetCut::Sliced;  // gives many lists
-    faces.sheet_spacing = 0.5;
-    for (const auto& [settings, pixels] : {std::pair(plain, 256), std::pair(faces, 128), std::pair(plain, 128)})
-        EXPECT_EQ(renderer.render(scene, camera, settings, pixels, pixels).stats.validation_messages, 0U);
-}
-
 }  // namespace
 }  // namespace edgesplat::test
