@@ -1,5 +1,7 @@
 #include "engine/passes/5_draw_splats.h"
 
+#include "engine/passes/kernel_constants.h"
+
 namespace edgesplat::passes {
 
 std::vector<std::uint32_t> quad_indices() {
@@ -12,21 +14,12 @@ std::vector<std::uint32_t> quad_indices() {
 }
 
 gpu::Specialization draw_constants(const DrawVariant& variant) {
-    gpu::Specialization constants{{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
-                                  {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
-                                  {shader::SPEC_NARROW, variant.narrow ? 1U : 0U},
-                                  {shader::SPEC_PAYLOAD, variant.payload},
-                                  {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
-                                  {shader::SPEC_NODES, variant.nodes},
-                                  {shader::SPEC_SHADOWS, variant.shadows},
-                                  {shader::SPEC_CLIP_KEEP, variant.clip.keep},
-                                  {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
-                                  {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
-                                  {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
-                                  {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
-                                  {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
-                                  {shader::SPEC_ISO_COUNT, variant.iso_count},
-                                  {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
+    gpu::Specialization constants = kernel_constants(variant);
+    constants.emplace_back(shader::SPEC_PAYLOAD, variant.payload);
+    constants.emplace_back(shader::SPEC_NODES, variant.nodes);
+    constants.emplace_back(shader::SPEC_SHADOWS, variant.shadows);
+    constants.emplace_back(shader::SPEC_ISO_COUNT, variant.iso_count);
+    constants.emplace_back(shader::SPEC_PIECES, variant.opaque ? 1U : 2U);
     constants.insert(constants.end(), variant.shading.begin(), variant.shading.end());
     return constants;
 }

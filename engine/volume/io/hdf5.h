@@ -7,12 +7,16 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
+
+/// The first bytes of every HDF5 file.
+inline constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n";
 
 /// HDF5 keeps global state and may be built without thread safety. Lock this mutex around every use of it, including
 /// libnetcdf. Recursive.

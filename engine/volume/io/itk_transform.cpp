@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -209,11 +207,11 @@ glm::dmat4 read_itk_transform(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file.read(first.data(), first.size())) fail("{}: cannot be read, or is too short for a transform", name);
     file.close();
-    constexpr std::array<char, 8> kHdf5{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
     const bool matlab = first[0] == 0 || first[0] == 10;
-    std::vector<StoredTransform> stored = first == kHdf5 ? transforms_of_hdf5(name)
-                                          : matlab       ? transforms_of_matlab(name)
-                                                         : transforms_of_text(name);
+    std::vector<StoredTransform> stored = std::string_view(first.data(), first.size()) == detail::kHdf5Signature
+                                              ? transforms_of_hdf5(name)
+                                          : matlab ? transforms_of_matlab(name)
+                                                   : transforms_of_text(name);
     const bool composite = stored.front().type == "CompositeTransform";
     if (composite) stored.erase(stored.begin());
     if (stored.empty() || (stored.size() > 1 && !composite))

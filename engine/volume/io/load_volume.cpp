@@ -62,11 +62,9 @@ void refuse_inner(const std::string& path, const LoadOptions& options, std::stri
              options.inner);
 }
 
-constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
-
 bool is_packed_volume(const std::string& path) {
     std::error_code error;
-    return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5) && is_packed(path);
+    return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5Signature) && is_packed(path);
 }
 
 void refuse_level(const std::string& path, const LoadOptions& options) {
@@ -127,10 +125,10 @@ constexpr std::array kFormats{
     Format{"netCDF",
            [](const Start& f) {
                return f.begins("CDF\x01") || f.begins("CDF\x02") || f.begins("CDF\x05") ||
-                      (f.begins(kHdf5) && is_netcdf4(f.path));
+                      (f.begins(kHdf5Signature) && is_netcdf4(f.path));
            },
            load_netcdf, true},
-    Format{"HDF5", [](const Start& f) { return f.begins(kHdf5); }, load_hdf5, true},
+    Format{"HDF5", [](const Start& f) { return f.begins(kHdf5Signature); }, load_hdf5, true},
     Format{"NIfTI and Analyze",
            [](const Start& f) {
                return f.is_named({".nii", ".nii.gz"}) || is_nifti(f.path) ||
