@@ -58,7 +58,8 @@ class Passes {
         add(passes::finish_splats(collect, 1));
     }
 
-    void add_reach(const FrameRequest& request, const FrameForecast& f) {
+    /// `several_volumes`: others have matter, too.
+    void add_reach(const FrameRequest& request, const FrameForecast& f, bool several_volumes) {
         const Clip& clip = request.scene.effects.clip;
         passes::SplatLight in{
             .iso_count = static_cast<std::uint32_t>(request.scene.iso_values.size()),
@@ -69,7 +70,7 @@ class Passes {
             in.beside = false;
             add(pass(in));
             in.beside = true;
-            if (f.draws.front().plan.variant.several) add(pass(in));
+            if (several_volumes) add(pass(in));
         };
         if (f.occluded) add_pass(passes::occlude_ambient);
         if (f.shadow_lights > 0) add_pass(passes::cast_shadows);
@@ -158,14 +159,16 @@ class Passes {
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast) {
     Passes passes(*forecast.profile);
     const std::vector<const FrameForecast*> parts = forecast_parts(forecast);
+    const bool several_volumes =
+        std::ranges::any_of(parts, [&](const FrameForecast* part) { return part->number != parts.front()->number; });
     for (const FrameForecast* part : parts) {
         passes.add_setup(*part);
-        passes.add_reach(request, *part);
+        passes.add_reach(request, *part, several_volumes);
     }
     for (std::size_t i = 0; i < forecast.draws.size(); ++i) {
         for (const FrameForecast* part : parts)
-            passes.add_draw(part->draws[i]);
-        if (parts.size() > 1) passes.end_parts(forecast.draws[i]);
+            if (!part->draws.empty()) passes.add_draw(part->draws[i]);
+        if (forecast.draws[i].plan.variant.mixed) passes.end_parts(forecast.draws[i]);
     }
     return passes.take();
 }

@@ -137,7 +137,8 @@ std::vector<Effect> light_effects() {
                     .resources = {"splat shadows"},
                     .record = {{"light that reaches the splat", 4}},
                     .constants = {{shader::SPEC_SHADOWS, "SPEC_SHADOWS"}},
-                    .frame_fields = {"splat_shadows", "shadow_channels"}});
+                    .frame_fields = {"shadow_channels"},
+                    .volume_fields = {"splat_shadows"}});
     rows.push_back({.name = "ambient occlusion",
                     .help = "less ambient light reaches hollows",
                     .call = "effects.occlusion",
@@ -148,7 +149,8 @@ std::vector<Effect> light_effects() {
                     .resources = {"splat occlusion"},
                     .record = {{"ambient light that reaches the splat", 4}},
                     .constants = {{shader::SPEC_OCCLUSION, "SPEC_OCCLUSION"}},
-                    .frame_fields = {"splat_occlusion", "occlusion_strength"}});
+                    .frame_fields = {"occlusion_strength"},
+                    .volume_fields = {"splat_occlusion"}});
     rows.push_back({.name = "several lights",
                     .help = "up to four lights of three kinds, each with its own colour",
                     .call = "lights[1], lights[2], lights[3]; --light several times",
@@ -184,7 +186,7 @@ std::vector<Effect> light_effects() {
                     .turn_on = [](FrameRequest& r) { r.scene.materials.back().response.diffuse = 0.7; },
                     .base = light,
                     .constants = {{shader::SPEC_RESPONSE, "SPEC_RESPONSE"}},
-                    .frame_fields = {"responses"}});
+                    .volume_fields = {"responses"}});
     rows.push_back({.name = "gloss",
                     .help = "highlights (Blinn-Phong) on glossy materials",
                     .call = "materials[i].response.specular > 0",
@@ -252,7 +254,7 @@ std::vector<Effect> light_effects() {
                     .resources = {"transfer function", "classified values"},
                     .record = {{"classified value", 4}},
                     .constants = {{shader::SPEC_TRANSFER, "SPEC_TRANSFER"}},
-                    .frame_fields = {"transfer", "values"},
+                    .volume_fields = {"transfer", "values"},
                     .scene_fields = {"transfer", "values"}});
     rows.push_back({.name = "labels",
                     .help = "every label of a segmentation has its own colour",
@@ -266,7 +268,8 @@ std::vector<Effect> light_effects() {
                     .resources = {"labels", "splat labels", "label colours"},
                     .record = {{"label", 4}},
                     .constants = {{shader::SPEC_LABELS, "SPEC_LABELS"}},
-                    .frame_fields = {"labels", "label_colors"},
+                    .frame_fields = {"label_colors"},
+                    .volume_fields = {"labels"},
                     .scene_fields = {"labels"}});
     return rows;
 }

@@ -35,16 +35,27 @@ void show_opaque_matter(FrameRequest& request) {
     request.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
 }
 
+/// Only the highest values are matter, and translucent.
+void show_translucent_matter(FrameRequest& request) {
+    show_opaque_matter(request);
+    request.scene.materials.back().extinction /= 80;
+}
+
 void draw_opaque_surfaces(FrameRequest& request) {
     request.settings.opaque = OpaqueMatter::Surfaces;
     // Without faces on the spline there are none.
     if (draws_faces(request.settings)) request.settings.edges = EdgeEstimator::Cubic;
 }
 
+/// Number of the parts that kernels draw.
+std::size_t kernels_of(std::span<const FrameRequest> parts) {
+    const auto are_kernels = [](const FrameRequest& part) { return !planned_collection(part).surfaces; };
+    return static_cast<std::size_t>(std::ranges::count_if(parts, are_kernels));
+}
+
 bool is_mixed(const FrameRequest& request) {
-    const auto is_of_kernels = [](const FrameRequest& part) { return !planned_collection(part).surfaces; };
     const std::vector<FrameRequest> parts = drawn_parts(request);
-    return parts.size() > 1 && is_of_kernels(parts.back());
+    return kernels_of(parts) > 0 && kernels_of(parts) < parts.size();
 }
 
 std::size_t volumes_of(std::span<const FrameRequest> parts) {
@@ -81,7 +92,8 @@ std::vector<Effect> settings_effects() {
                        {shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS"},
                        {shader::SPEC_EDGES, "SPEC_EDGES"},
                        {shader::SPEC_FACES, "SPEC_FACES"}},
-         .frame_fields = {"footprint", "traits"},
+         .frame_fields = {"footprint"},
+         .volume_fields = {"traits"},
          .scene_fields = {"traits"}});
     rows.push_back({.name = "spline edges",
                     .help = "edges are estimated on the cubic B-spline through the samples",
@@ -110,7 +122,8 @@ std::vector<Effect> settings_effects() {
                     .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
                                 "splat traits", "tiles of splats", "unfinished sheets"},
                     .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
-                    .frame_fields = {"iso", "sheets_drawn", "solid", "visible_mask"},
+                    .frame_fields = {"sheets_drawn"},
+                    .volume_fields = {"iso", "solid", "visible_mask"},
                     .scene_fields = {"noise"}});
     rows.push_back(
         {.name = "opaque behind translucent",
@@ -142,7 +155,9 @@ std::vector<Effect> settings_effects() {
          .call = "scene.added; [[volumes]] in a scene file, or several volumes on the command line",
          .reason = [](const FrameRequest& r) -> std::string {
              const std::vector<FrameRequest> parts = drawn_parts(r);
-             return are_of_several_volumes(parts) ? fmt::format("{} volumes have matter", volumes_of(parts)) : "";
+             const bool surfaces = kernels_of(parts) < parts.size();
+             return surfaces && are_of_several_volumes(parts) ? fmt::format("{} volumes have matter", volumes_of(parts))
+                                                              : "";
          },
          .turn_on =
              [](FrameRequest& r) {
@@ -168,6 +183,32 @@ std::vector<Effect> settings_effects() {
          .constants = {{shader::SPEC_MIXED, "SPEC_MIXED"}},
          .frame_fields = {"nearest_surfaces", "nearest_ways", "seen_surfaces", "seen_ways", "surfaces_passed",
                           "tile_ends"}});
+    rows.push_back({.name = "translucent volumes",
+                    .help = "kernels of several volumes, each on its own grid, are sorted and drawn as one list",
+                    .call = "scene.added; [[volumes]] in a scene file, or several volumes on the command line",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const std::size_t count = kernels_of(drawn_parts(r));
+                        return count > 1 ? fmt::format("{} volumes have translucent matter", count) : "";
+                    },
+                    .turn_on =
+                        [](FrameRequest& r) {
+                            auto moved = std::make_shared<Volume>(*r.volume);
+                            moved->geometry.origin +=
+                                0.3 * moved->geometry.index_to_world_axes * glm::dvec3(moved->geometry.dims);
+                            r.scene.added.push_back({.volume = std::move(moved),
+                                                     .iso_values = {r.scene.iso_values.back()},
+                                                     .materials = {{}, r.scene.materials.back()},
+                                                     .transfer = {},
+                                                     .label_colors = {}});
+                        },
+                    .base = show_translucent_matter,
+                    .resized = {"B-spline coefficients", "batches of splats", "chunks of sheets", "edge field",
+                                "listed bricks", "pairs of sheets", "prepared splats", "run offsets",
+                                "scene parameters", "sheet starts", "sheets of splats", "sort counters", "splat list",
+                                "splat order", "splat traits", "tiles of splats", "volume"},
+                    .constants = {{shader::SPEC_TOGETHER, "SPEC_TOGETHER"}},
+                    .frame_fields = {"volume_count"},
+                    .volume_fields = {"first_splat"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",

@@ -36,7 +36,7 @@ std::vector<Effect> view_effects() {
          .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "sort counters",
                      "tiles of splats", "pairs of sheets", "sheet starts", "chunks of sheets", "prepared splats"},
          .constants = {{shader::SPEC_CLIP_KEEP, "SPEC_CLIP_KEEP"}, {shader::SPEC_CLIP_REMOVE, "SPEC_CLIP_REMOVE"}},
-         .frame_fields = {"clip_keep", "clip_remove"},
+         .volume_fields = {"clip_keep", "clip_remove"},
          .scene_fields = {"clip_keep", "clip_remove"}});
     rows.push_back({.name = "antialias",
                     .help = "footprints are at least a pixel wide; their integrals do not change",

@@ -37,13 +37,14 @@ struct Effect {
     void (*turn_on)(FrameRequest&);
     /// Prepares a plain request (plain_request()) such that turn_on() then adds this effect only.
     void (*base)(FrameRequest&) = nullptr;
-    std::vector<std::string_view> passes{};        ///< passes that run for it
-    std::vector<std::string_view> resources{};     ///< names of images and buffers that exist for it
-    std::vector<std::string_view> resized{};       ///< names of every frame's resources whose size it changes
-    std::vector<RecordField> record{};             ///< fields of the splat record
-    std::vector<EffectConstant> constants{};       ///< specialization constants that it changes
-    std::vector<std::string_view> frame_fields{};  ///< members of FrameParams that only frames with it read
-    std::vector<std::string_view> scene_fields{};  ///< members of SceneParams that only frames with it read
+    std::vector<std::string_view> passes{};         ///< passes that run for it
+    std::vector<std::string_view> resources{};      ///< names of images and buffers that exist for it
+    std::vector<std::string_view> resized{};        ///< names of every frame's resources whose size it changes
+    std::vector<RecordField> record{};              ///< fields of the splat record
+    std::vector<EffectConstant> constants{};        ///< specialization constants that it changes
+    std::vector<std::string_view> frame_fields{};   ///< members of FrameParams that only frames with it read
+    std::vector<std::string_view> volume_fields{};  ///< likewise of VolumeParams
+    std::vector<std::string_view> scene_fields{};   ///< members of SceneParams that only frames with it read
 };
 
 /// All effects, in the order of the table.

@@ -211,6 +211,18 @@ void check_several(const FrameRequest& request) {
                 added.volume->name);
 }
 
+/// Throws Error if a volume's kernels cannot be drawn with what other volumes have.
+void check_kernels(const FrameRequest& part) {
+    const Settings settings = drawn_settings(part);
+    if (settings.sheet_format != SheetFormat::Tiles)
+        fail("volumes: the kernels of {} would be drawn in layers, expected sheet_format = tiles", part.volume->name);
+    if (has_opaque_matter(part) && draws_faces(settings))
+        fail(
+            "volumes: the opaque matter of {} would be drawn by kernels; several volumes need surface splats: "
+            "opaque = surfaces, edges = cubic, sheet_format = tiles, no antialias",
+            part.volume->name);
+}
+
 }  // namespace
 
 std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
@@ -225,20 +237,14 @@ std::vector<FrameRequest> drawn_parts(const FrameRequest& request) {
             (opaque ? surfaces : kernels).push_back(std::move(part));
         }
     }
-    for (const FrameRequest& part : kernels) {
-        const std::string& name = part.volume->name;
-        if (part.number != kernels.front().number)
-            fail("volumes: {} and {} have translucent matter, expected at most one such volume of several",
-                 kernels.front().volume->name, name);
-        if (has_opaque_matter(part))
-            fail(
-                "volumes: the opaque matter of {} would be drawn by kernels; several volumes need surface splats: "
-                "opaque = surfaces, edges = cubic, sheet_format = tiles, no antialias",
-                name);
-    }
+    for (const FrameRequest& part : kernels)
+        check_kernels(part);
+    if (kernels.size() > shader::MAX_TOGETHER)
+        fail("volumes: {} volumes have translucent matter, expected at most {}", kernels.size(), shader::MAX_TOGETHER);
     // The picture must not depend on the order of the volumes.
-    std::ranges::stable_sort(surfaces, {},
-                             [](const FrameRequest& part) { return volume_order(*part.volume, part.scene); });
+    for (std::vector<FrameRequest>* parts : {&surfaces, &kernels})
+        std::ranges::stable_sort(*parts, {},
+                                 [](const FrameRequest& part) { return volume_order(*part.volume, part.scene); });
     surfaces.insert(surfaces.end(), kernels.begin(), kernels.end());
     if (surfaces.empty()) surfaces.push_back(request_of_volume(request, 0));
     return surfaces;
@@ -292,6 +298,31 @@ SplatCount count_splats_of(const FrameRequest& part, const CollectionPlan& colle
     return count_splats(*part.volume, collection);
 }
 
+namespace {
+
+/// Notes in the plans that they are of parts of one picture. The last part of kernels draws those of all.
+void mark_parts(std::vector<FrameForecast>& parts, bool several_volumes) {
+    const auto kernels =
+        std::ranges::find_if(parts, [](const FrameForecast& part) { return !part.collection.surfaces; });
+    const bool mixed = kernels != parts.begin();
+    for (FrameForecast& part : parts)
+        for (ForecastDraw& draw : part.draws) {
+            draw.plan.variant.mixed = mixed;
+            draw.plan.variant.several = mixed && several_volumes;
+        }
+    if (parts.end() - kernels < 2) return;
+    for (std::size_t i = 0; i < parts.back().draws.size(); ++i) {
+        std::vector<FramePlan> plans;
+        for (auto part = kernels; part != parts.end(); ++part)
+            plans.push_back(part->draws[i].plan);
+        parts.back().draws[i].plan = plan_together(plans);
+    }
+    for (auto part = kernels; part + 1 != parts.end(); ++part)
+        part->draws.clear();
+}
+
+}  // namespace
+
 FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& count,
                              const gpu::DeviceProfile& profile) {
     std::vector<FrameForecast> parts;
@@ -302,12 +333,9 @@ FrameForecast forecast_frame(const FrameRequest& request, const SplatCounter& co
             forecast_part(part, collection, count(part, collection), kernel_reach(drawn_settings(part)), profile));
     }
     if (parts.size() == 1) return std::move(parts.front());
+    mark_parts(parts, are_of_several_volumes(drawn));
     FrameForecast out;
     for (FrameForecast& part : parts) {
-        for (ForecastDraw& draw : part.draws) {
-            draw.plan.variant.mixed = true;
-            draw.plan.variant.several = are_of_several_volumes(drawn);
-        }
         if (&part != &parts.front()) part.behind = std::make_shared<const FrameForecast>(std::move(out));
         out = std::move(part);
     }

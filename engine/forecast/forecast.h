@@ -52,11 +52,11 @@ struct FrameForecast {
     CollectionPlan collection;
     SplatCount splats;
     const gpu::DeviceProfile* profile = nullptr;  ///< the device's profile
-    std::vector<ForecastDraw> draws;
-    bool occluded = false;                   ///< ambient occlusion is on
-    std::size_t shadow_lights = 0;           ///< number of lights with shadows
-    std::vector<PlannedResource> resources;  ///< all resources of a Renderer during this frame
-    std::size_t number = 0;                  ///< FrameRequest::number
+    std::vector<ForecastDraw> draws;              ///< empty if the last part draws the splats, too
+    bool occluded = false;                        ///< ambient occlusion is on
+    std::size_t shadow_lights = 0;                ///< number of lights with shadows
+    std::vector<PlannedResource> resources;       ///< all resources of a Renderer during this frame
+    std::size_t number = 0;                       ///< FrameRequest::number
     /// Of several parts (drawn_parts): the one before this, drawn first. Else null.
     std::shared_ptr<const FrameForecast> behind;
 };
@@ -74,8 +74,8 @@ FrameRequest request_of_volume(const FrameRequest& request, std::size_t number);
 /// request itself. Precondition: no added volumes.
 std::vector<FrameRequest> parts_of_volume(const FrameRequest& request);
 
-/// The parts of all volumes with matter: surface splats first, then at most one part of kernels. Their order does not
-/// depend on that of the volumes. Throws Error if several volumes cannot be drawn together.
+/// The parts of all volumes with matter: surface splats first, then kernels, which are drawn as one list. Their order
+/// does not depend on that of the volumes. Throws Error if several volumes cannot be drawn together.
 std::vector<FrameRequest> drawn_parts(const FrameRequest& request);
 
 /// Whether the parts are of several volumes.

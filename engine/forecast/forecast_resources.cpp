@@ -32,7 +32,7 @@ void add_placeholders(std::vector<PlannedResource>& out) {
         out.push_back(buffer(kPlaceholderTexels, kPlaceholderBytes));
         out.back().texels = format;
     }
-    out.push_back(buffer(kPlaceholderBlock, sizeof(shader::FrameParams), gpu::Buffer::Place::Host));
+    out.push_back(buffer(kPlaceholderBlock, sizeof(shader::FrameBlock), gpu::Buffer::Place::Host));
 }
 
 /// `parts`: of one volume.

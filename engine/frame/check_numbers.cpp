@@ -39,7 +39,7 @@ void check_splats(DeviceSession& session, const CollectedSplats& list) {
          named(session, list, static_cast<std::uint32_t>(bad)), values[bad]);
 }
 
-void PictureDrawer::check_picture(const CollectedSplats& list) {
+void PictureDrawer::check_picture() {
     const auto pixels = [&] { return floats(targets_.pixels(plan_)); };
     const std::size_t bad = first_bad(pixels());
     if (bad == pixels().size()) return;
@@ -51,7 +51,7 @@ void PictureDrawer::check_picture(const CollectedSplats& list) {
     const std::uint32_t all = plan_.params.splat_count;
     const auto sound = [&](std::uint32_t splats) {
         draw_first(plan_, splats);
-        draw_planned(list);
+        draw_planned();
         return first_bad(pixels()) == pixels().size();
     };
     if (!sound(0)) fail("7_resolve: {}, even without splats", where);
@@ -61,7 +61,12 @@ void PictureDrawer::check_picture(const CollectedSplats& list) {
         (sound(middle) ? good : not_good) = middle;
     }
     draw_first(plan_, all);
-    fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, list, good), where);
+    std::size_t volume = 0;
+    for (; volume < plan_.together.size() && good >= plan_.together[volume].first_splat; ++volume) {
+    }
+    if (volume > 0) good -= plan_.together[volume - 1].first_splat;
+    fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, lists_[volume], good),
+         where);
 }
 
 }  // namespace edgesplat

@@ -19,6 +19,17 @@ void need_layers(const gpu::Device& device, const Scene& scene, const Settings& 
         fail("sheet_format: {} has {}, expected `tiles`", device.info().name, obstacle);
 }
 
+namespace {
+
+FramePlan plan_of_kernels(std::span<const PicturePart> parts) {
+    if (parts.size() == 1) return parts.front().plan;
+    std::vector<FramePlan> plans;
+    std::ranges::transform(parts, std::back_inserter(plans), &PicturePart::plan);
+    return plan_together(plans);
+}
+
+}  // namespace
+
 FramePlan PictureDrawer::plan(const CollectedSplats& list, const Scene& scene, const Camera& camera,
                               const Settings& settings, const glm::ivec2& size, std::uint32_t payload) const {
     const Volume& volume = *list.volume.volume();
@@ -34,57 +45,78 @@ void PictureDrawer::draw(const CollectedSplats& list, FramePlan plan) {
     beside_.clear();
     drawn_before_ = 0;
     counts_before_ = {};
-    draw_list(list, std::move(plan));
+    draw_lists({list}, std::move(plan));
 }
 
-void PictureDrawer::draw_list(const CollectedSplats& list, FramePlan plan) {
+void PictureDrawer::draw_lists(std::vector<CollectedSplats> lists, FramePlan plan) {
     plan_ = std::move(plan);
-    list.splats.bind(list.volume);
-    if (options_->check_numbers) check_splats(*session_, list);
-    draw_planned(list);
+    lists_ = std::move(lists);
+    if (options_->check_numbers)
+        for (const CollectedSplats& list : lists_)
+            check_splats(*session_, list);
+    draw_planned();
     examined_ = plan_.splats_examined;
-    if (options_->check_numbers) check_picture(list);
+    if (options_->check_numbers) check_picture();
 }
 
 void PictureDrawer::draw_parts(std::vector<PicturePart> parts, bool several_volumes) {
-    beside_.clear();
+    const auto kernels =
+        std::ranges::find_if(parts, [](const PicturePart& part) { return !part.plan.variant.surfaces; });
+    const bool mixed = kernels != parts.begin();
     for (PicturePart& part : parts) {
-        part.plan.variant.mixed = true;
-        part.plan.variant.several = several_volumes;
-        part.plan.first = beside_.empty();
-        beside_.push_back(part.plan);
+        part.plan.variant.mixed = mixed;
+        part.plan.variant.several = mixed && several_volumes;
+        part.plan.first = &part == &parts.front();
     }
+    beside_.clear();
+    for (auto part = parts.begin(); part != kernels; ++part)
+        beside_.push_back(part->plan);
+    if (kernels != parts.end()) beside_.push_back(plan_of_kernels({kernels, parts.end()}));
     drawn_before_ = 0;
     counts_before_ = {};
     std::uint64_t examined = 0;
     std::vector<PassTime> times;
     std::vector<float> ends;  // of the tiles' rays, at surfaces of all parts so far
-    for (PicturePart& part : parts) {
-        if (!part.plan.first) {
+    const auto draw = [&](std::vector<CollectedSplats> lists, FramePlan plan) {
+        if (!plan.first) {
             drawn_before_ = splats_drawn();
             counts_before_ = counts();
-            cull_behind(part.plan, part.list.splats.lists().bricks, ends);
         }
-        draw_list(part.list, std::move(part.plan));
+        draw_lists(std::move(lists), std::move(plan));
         add_times(times, times_);
         examined += examined_;
-        if (!plan_.variant.surfaces) continue;
+    };
+    const auto cull = [&](PicturePart& part) {
+        if (!ends.empty()) cull_behind(part.plan, part.list.splats.lists().bricks, ends);
+    };
+    for (auto part = parts.begin(); part != kernels; ++part) {
+        cull(*part);
+        draw({part->list}, std::move(part->plan));
         const auto own = targets_.resources().tile_ends.mapped<float>(tile_count(plan_));
         ends.resize(own.size(), std::numeric_limits<float>::infinity());
         std::ranges::transform(ends, own, ends.begin(), [](float a, float b) { return std::min(a, b); });
     }
-    if (plan_.variant.surfaces) add_times(times, join_volumes(session_->commands(), plan_, targets_.resources()));
+    if (kernels != parts.end()) {
+        std::vector<CollectedSplats> lists;
+        for (auto part = kernels; part != parts.end(); ++part) {
+            cull(*part);
+            lists.push_back(part->list);
+        }
+        draw(std::move(lists), plan_of_kernels({kernels, parts.end()}));
+    } else {
+        add_times(times, join_volumes(session_->commands(), plan_, targets_.resources()));
+    }
     examined_ = examined;
     times_ = std::move(times);
 }
 
-void PictureDrawer::provide_targets(const CollectedSplats& list) {
-    targets_.provide(plan_, list.splats.lists(), beside_);
+void PictureDrawer::provide_targets() {
+    targets_.provide(plan_, lists_, beside_);
 }
 
-void PictureDrawer::draw_planned(const CollectedSplats& list) {
-    list.splats.bind(list.volume);
-    provide_targets(list);
+void PictureDrawer::draw_planned() {
+    lists_.front().splats.bind(lists_.front().volume);
+    provide_targets();
     gpu::Commands& commands = session_->commands();
     if (!plan_.variant.tiles) {
         times_ = draw_layers(commands, plan_, targets_.resources());
@@ -92,7 +124,7 @@ void PictureDrawer::draw_planned(const CollectedSplats& list) {
     }
     const passes::TileDraw how{.profile = &session_->profile(), .count = options_->counting};
     times_.clear();
-    if (draw_front_first(list, how)) return;
+    if (draw_front_first(how)) return;
     // Expect as many chunks as the last picture had: an empty one costs as much as waiting once. 0 if the device could
     // not have planned them.
     const auto foresee = [&](const Chunks& chunks) {
@@ -112,7 +144,8 @@ void PictureDrawer::draw_planned(const CollectedSplats& list) {
     foresee(chunks);
 }
 
-bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::TileDraw& how) {
+bool PictureDrawer::draw_front_first(const passes::TileDraw& how) {
+    const CollectedSplats& list = lists_.front();
     const auto& collected = list.splats.collected();
     if (!session_->profile().front_first || !collected || !(collected->buried || collected->surfaces)) return false;
     const SplatLists& splats = list.splats.lists();
@@ -123,12 +156,12 @@ bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::
     const FramePlan whole = plan_;
     draw_bricks(plan_, splats.bricks, divided->front);
     plan_.params.sheets_drawn = static_cast<std::uint32_t>(std::max(divided->sheet - plan_.params.sheet_base, 0));
-    provide_targets(list);
+    provide_targets();
     Chunks chunks = sort_frame(commands, plan_, targets, {.end = divided->sheet});
     times_ = commands.span_times();
     if (whole.refined && should_refine(chunks)) {
         plan_ = whole;
-        provide_targets(list);
+        provide_targets();
         return false;
     }
     plan_.refined = false;
@@ -149,7 +182,7 @@ bool PictureDrawer::draw_front_first(const CollectedSplats& list, const passes::
     std::ranges::copy_if(divided->rest, std::back_inserter(shown),
                          [&](std::uint32_t number) { return open.may_show(splats.bricks.bricks()[number].box); });
     draw_bricks(plan_, splats.bricks, shown);
-    provide_targets(list);
+    provide_targets();
     chunks = sort_frame(commands, plan_, targets, {.begin = divided->sheet, .continues = true});
     add_times(times_, commands.span_times());
     draw_chunks(chunks, how);
@@ -178,7 +211,8 @@ OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest&
     plan_.params.saturation += 0.2F * (1 - plan_.params.saturation);
     plan_.refined = plan_.may_refine = false;
     level.splats.bind(level.volume);
-    targets_.provide(plan_, level.splats.lists());
+    lists_ = std::vector<CollectedSplats>{level.all()};
+    targets_.provide(plan_, lists_);
     const TargetResources& targets = targets_.resources();
     const Chunks chunks = sort_frame(commands, plan_, targets, {.end = sheet});
     targets_.provide_chunks(plan_, chunks);

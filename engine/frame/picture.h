@@ -16,7 +16,7 @@ struct PictureCounts {
     double dirty_share = 0;           ///< mean share of the picture that a sheet (tiles) or sheet group (layers) covers
 };
 
-/// A part of a picture: its splats, and its plan.
+/// A part of a picture: the splats of a volume, and its plan.
 struct PicturePart {
     CollectedSplats list;
     FramePlan plan;
@@ -48,8 +48,8 @@ class PictureDrawer {
     /// Draws the plan and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the splat if a
     /// number in the splat list or the picture is not finite.
     void draw(const CollectedSplats& splats, FramePlan plan);
-    /// The same for several parts: surface splats of a mixture or of several volumes, then, if the last part has them,
-    /// kernels in front of those surfaces. Times, counts and numbers of splats are of all parts.
+    /// The same for several parts: surface splats of a mixture or of several volumes, one after another, then all
+    /// kernels as one list, in front of those surfaces. Times, counts and numbers of splats are of all parts.
     void draw_parts(std::vector<PicturePart> parts, bool several_volumes);
     /// The tiles that the sheets in front of `sheet` (numbered from the eye on) leave unsaturated. Frees the targets.
     OpenTiles open_tiles(const LevelStore& level, const FrameRequest& request, int sheet);
@@ -68,23 +68,25 @@ class PictureDrawer {
     Targets& targets() { return targets_; }
 
   private:
-    void draw_list(const CollectedSplats& list, FramePlan plan);
-    void draw_planned(const CollectedSplats& list);
-    void provide_targets(const CollectedSplats& list);
+    /// `lists`: of the plan's volumes.
+    void draw_lists(std::vector<CollectedSplats> lists, FramePlan plan);
+    void draw_planned();
+    void provide_targets();
     /// Draws a tiled picture after the sort.
     void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);
     /// Draws a tiled picture in two parts, the second without the bricks that the first one occludes. Returns false
     /// and draws nothing if that saves no time.
-    bool draw_front_first(const CollectedSplats& list, const passes::TileDraw& how);
+    bool draw_front_first(const passes::TileDraw& how);
 
-    void check_picture(const CollectedSplats& list);
+    void check_picture();
 
     DeviceSession* session_;
     const RenderOptions* options_;
     Targets targets_;
     Culling culling_;
     FramePlan plan_;
-    std::vector<FramePlan> beside_;  ///< the plans of all parts of the picture, if it has several
+    std::vector<CollectedSplats> lists_;  ///< of the plan's volumes
+    std::vector<FramePlan> beside_;       ///< the plans of all parts of the picture, if it has several
     std::uint64_t examined_ = 0;
     std::uint32_t drawn_before_ = 0;  ///< of the parts before the last, and their counts
     PictureCounts counts_before_;

@@ -23,6 +23,14 @@ shader::Address address_of(const gpu::Buffer& buffer) {
     return buffer ? buffer.address() : shader::Address();
 }
 
+void point_to(shader::VolumeParams& volume, const SplatLists& splats) {
+    for (const SplatListRow& row : splat_list_rows())
+        volume.*row.drawn = address_of(splats.*row.list);
+    for (const LightListRow& row : light_list_rows())
+        volume.*row.drawn = address_of(splats.*row.list);
+    volume.transfer = address_of(splats.transfer);
+}
+
 }  // namespace
 
 Targets::Targets(DeviceSession& session) : session_(&session) {
@@ -73,7 +81,7 @@ void Targets::provide_images(const FramePlan& plan) {
     });
 }
 
-void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const FramePlan> beside) {
+void Targets::provide(FramePlan& plan, std::span<const CollectedSplats> splats, std::span<const FramePlan> beside) {
     auto& p = plan.params;
     const gpu::DeviceProfile& profile = session_->profile();
     // Free what this plan does not need before allocating.
@@ -82,7 +90,7 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const
         if (!needs(plan) && std::ranges::none_of(beside, needs)) resources_.*row.buffer = {};
     }
     provide_images(plan);
-    if (resources_.footprint_table) fill_table(p.table_depth > 0 ? FACE_DEPTH : 0);
+    if (resources_.footprint_table) fill_table(plan.volume.table_depth > 0 ? FACE_DEPTH : 0);
     p.tile_blocks = tile_blocks(p.tiles, profile);
     p.chunk_pairs = static_cast<std::uint32_t>(chunk_pairs(p.tiles, profile));
     p.prepared_mask = passes::prepared_slots(std::uint64_t{p.splat_count} * plan.sheets_per_splat) - 1;
@@ -90,11 +98,6 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const
         if (const std::uint64_t bytes = row.bytes(plan, profile); bytes > 0) grow(row, bytes);
         if (row.address) p.*row.address = address_of(resources_.*row.buffer);
     }
-    for (const SplatListRow& row : splat_list_rows())
-        p.*row.drawn = address_of(splats.*row.list);
-    for (const LightListRow& row : light_list_rows())
-        p.*row.drawn = address_of(splats.*row.list);
-    p.transfer = address_of(splats.transfer);
     std::ranges::copy(plan.batches, resources_.batches.mapped<glm::uvec2>(plan.batches.size()).begin());
     if (resources_.label_colors)
         std::ranges::copy(plan.label_colors,
@@ -103,7 +106,12 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats, std::span<const
         const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
         std::ranges::fill(resources_.groups.mapped<shader::SheetGroup>(p.group_count), empty);
     }
-    resources_.frame.mapped<shader::FrameParams>(1)[0] = p;
+    block().frame = p;
+    for (std::size_t k = 0; k < splats.size(); ++k) {
+        shader::VolumeParams& volume = k == 0 ? plan.volume : plan.together[k - 1];
+        point_to(volume, splats[k].splats.lists());
+        block().volumes[k] = volume;
+    }
     session_->bindings().write_targets(resources_);
 }
 
@@ -115,7 +123,7 @@ void Targets::fill_table(double depth) {
 }
 
 void Targets::provide_chunks(FramePlan& plan, const Chunks& chunks) {
-    auto& p = resources_.frame.mapped<shader::FrameParams>(1)[0];
+    auto& p = block().frame;
     const auto grow_to = [&](gpu::Buffer TargetResources::*buffer, std::uint64_t bytes) {
         const TargetBufferRow& row = row_of(buffer);
         grow(row, bytes);

@@ -4,6 +4,7 @@
 #include "engine/frame/tiles/chunks.h"
 #include "engine/plan/device_session.h"
 #include "engine/plan/resource_table.h"
+#include "engine/store/splat_store.h"
 
 namespace edgesplat {
 
@@ -18,9 +19,9 @@ class Targets {
 
     const TargetResources& resources() const { return resources_; }
     /// Allocates what the plan's passes need, fills in addresses and writes the frame's parameters. Larger resources
-    /// of earlier pictures are reused; those that neither this plan nor `beside` needs are freed. `beside`: the plans
-    /// of the picture's other parts.
-    void provide(FramePlan& plan, const SplatLists& splats, std::span<const FramePlan> beside = {});
+    /// of earlier pictures are reused; those that neither this plan nor `beside` needs are freed. `splats`: the lists
+    /// of the plan's volumes. `beside`: the plans of the picture's other parts.
+    void provide(FramePlan& plan, std::span<const CollectedSplats> splats, std::span<const FramePlan> beside = {});
     /// Allocates room for the pairs of the largest chunk and writes the chunks.
     void provide_chunks(FramePlan& plan, const Chunks& chunks);
     /// Frees all resources except those that every picture needs.
@@ -31,6 +32,8 @@ class Targets {
 
   private:
     void grow(const TargetBufferRow& row, std::uint64_t bytes);
+    /// The block that the passes read.
+    shader::FrameBlock& block() const { return resources_.frame.mapped<shader::FrameBlock>(1)[0]; }
     void provide_images(const FramePlan& plan);
     /// Uploads the table of footprints of kernels at faces, for face depth `depth` (voxels).
     void fill_table(double depth);

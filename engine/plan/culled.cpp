@@ -35,14 +35,21 @@ void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& v
 
 void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers) {
     // All gaps are at least a batch long, so slots < splats + SPLAT_BATCH.
-    plan.batches = batches_of(bricks.parts_of(numbers, shader::SPLAT_BATCH));
-    const auto slots = static_cast<std::uint32_t>(plan.batches.size()) * shader::SPLAT_BATCH;
-    plan.variant.culled = slots < plan.params.splat_count;
-    if (!plan.variant.culled) plan.batches.clear();
-    plan.splats_examined = plan.variant.culled ? 0 : plan.params.splat_count;
+    std::vector<glm::uvec2> batches = batches_of(bricks.parts_of(numbers, shader::SPLAT_BATCH));
+    if (batches.size() * shader::SPLAT_BATCH < plan.params.splat_count) return draw_batches(plan, std::move(batches));
+    plan.variant.culled = false;
+    plan.batches.clear();
+    plan.splats_examined = plan.params.splat_count;
+    set_slots(plan, plan.params.splat_count);
+}
+
+void draw_batches(FramePlan& plan, std::vector<glm::uvec2> batches) {
+    plan.variant.culled = true;
+    plan.batches = std::move(batches);
+    plan.splats_examined = 0;
     for (const glm::uvec2& batch : plan.batches)
         plan.splats_examined += batch.y;
-    set_slots(plan, plan.variant.culled ? slots : plan.params.splat_count);
+    set_slots(plan, static_cast<std::uint32_t>(plan.batches.size()) * shader::SPLAT_BATCH);
 }
 
 }  // namespace edgesplat

@@ -121,7 +121,7 @@ void plan_shading(const Scene& scene, const Volume& volume, const Settings& sett
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const Material& material = scene.materials[m];
         const LightResponse& r = material.response;
-        p.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
+        plan.volume.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
         if (scene.lights.empty() || !(extinctions_of(scene, m).most > 0)) continue;
         response = response || has_own_response(material);
         gloss = gloss || r.specular > 0;
@@ -142,6 +142,9 @@ void plan_shading(const Scene& scene, const Volume& volume, const Settings& sett
     const bool lit_edges = needs_normals(scene) && lights_edges_only(scene, draws_warped(settings));
     const std::uint32_t labels = labels_drawn(scene, volume);
     if (labels != 0) plan.label_colors = label_colors(scene);
+    plan.volume.has_transfer = scene.transfer.empty() ? 0 : 1;
+    plan.volume.has_labels = labels != 0 ? 1 : 0;
+    plan.volume.lit_edges = lit_edges ? 1 : 0;
     variant.shading = {{shader::SPEC_LIGHT, color ? static_cast<std::uint32_t>(scene.lights.size()) : 0},
                        {shader::SPEC_RESPONSE, color && response ? 1 : 0},
                        {shader::SPEC_GLOSS, color && gloss ? 1 : 0},
@@ -300,7 +303,7 @@ std::uint32_t faces_in_sight(const glm::ivec3& dims, const glm::dvec3& eye) {
 namespace {
 
 /// Whether the field may be matter at a point in the volume (index space), as 5_begin_surfaces asks.
-bool may_be_matter(const Volume& volume, const shader::FrameParams& params, const glm::dvec3& at) {
+bool may_be_matter(const Volume& volume, const shader::VolumeParams& params, const glm::dvec3& at) {
     const glm::ivec3 last = volume.geometry.dims - 1,
                      cell = glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), last);
     float least = INFINITY, most = -INFINITY;
@@ -392,15 +395,40 @@ namespace {
 
 /// Fills in the materials by value.
 void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
-    auto& p = plan.params;
+    auto& v = plan.volume;
     plan.variant.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
-    place_iso_values(volume, scene.iso_values, p.iso);
+    place_iso_values(volume, scene.iso_values, v.iso);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
-        if (scene.materials[m].extinction > 0) p.visible_mask |= 1U << m;
-    p.solid = static_cast<float>(solid_chord(scene, volume.geometry));
+        if (scene.materials[m].extinction > 0) v.visible_mask |= 1U << m;
+    v.solid = static_cast<float>(solid_chord(scene, volume.geometry));
 }
 
 }  // namespace
+
+void place_sheets(FramePlan& plan) {
+    const SplatDepths& depths = plan.depths;
+    const double thickness = depths.thickness;
+    if (plan.variant.sliced)
+        plan.sheets_per_splat =
+            static_cast<std::uint32_t>(std::min(std::floor(2 * depths.reach / thickness), 32766.0)) + 2;
+    const double base = std::floor(std::max(depths.nearest, 0.0) / thickness);
+    const double sheets = std::max(std::floor(depths.farthest / thickness) - base + 1.0, 1.0);
+    if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
+        fail(
+            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; at most {:.0f} are possible: choose "
+            "a larger --sheet-spacing",
+            sheets, thickness, base, kMaxSheets);
+    }
+    auto& p = plan.params;
+    const std::uint64_t layer_bytes = 16 * static_cast<std::uint64_t>(p.size.x) * static_cast<std::uint64_t>(p.size.y);
+    p.sheet_thickness = static_cast<float>(thickness);
+    p.sheet_base = static_cast<int>(base);
+    plan.volume.sheet_zero = static_cast<float>(base * thickness - depths.anchor);
+    p.sheet_count = static_cast<std::uint32_t>(sheets);
+    p.sheets_per_group = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));
+    p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
+}
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats, double farthest_reach,
@@ -412,7 +440,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const glm::dvec3 anchor = 0.5 * (glm::dvec3(splats.low) + glm::dvec3(splats.high));
     const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
     const double voxel_along_view = 1.0 / glm::length(to_index * view.forward);
-    const double thickness = sheet_thickness(geometry, camera, settings);
 
     FramePlan plan;
     // Only colour pictures have several samples; a light's picture has no effects.
@@ -438,15 +465,16 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;
-    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
-    p.anchor = to_float(anchor);
+    auto& v = plan.volume;
+    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, v.clip_keep, v.clip_remove);
+    v.anchor = to_float(anchor);
     plan.variant.surfaces = payload != shader::PAYLOAD_TAU && splats.surfaces;
     plan.variant.narrow = draws_opaque_faces(settings, scene, geometry);
-    p.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
+    v.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
     if (plan.variant.surfaces) plan_matter(volume, scene, plan);
     const glm::dvec3 eye = geometry.to_index(view.eye);
     const std::uint32_t entered = faces_in_sight(geometry.dims, eye);
-    const bool begins = entered == 0 ? may_be_matter(volume, p, eye) : (entered & splats.border) != 0;
+    const bool begins = entered == 0 ? may_be_matter(volume, v, eye) : (entered & splats.border) != 0;
     plan.variant.begins = plan.variant.surfaces && (plan.variant.clip.any() || begins);
     if (plan.variant.surfaces && splats.count >= shader::NUMBERED_SPLATS - shader::MAX_MATERIALS)
         fail("{} surface splats are too many, expected less than 2^28: choose --opaque kernels", splats.count);
@@ -455,33 +483,32 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                    .paper_rise = static_cast<float>(paper.rise),
                    .paper_smooth = 0,
                    .paper_reach = static_cast<float>(kPaperReach)};
-    p.view_x = to_float(glm::transpose(to_world) * view.right);
-    p.view_y = to_float(glm::transpose(to_world) * down);
-    p.view_z = to_float(glm::transpose(to_world) * view.forward);
-    p.anchor_x = static_cast<float>(glm::dot(view.right, anchor_view));
-    p.anchor_y = static_cast<float>(glm::dot(down, anchor_view));
-    p.anchor_z = static_cast<float>(glm::dot(view.forward, anchor_view));
-    p.eye = to_float(to_index * -anchor_view);
+    v.view_x = to_float(glm::transpose(to_world) * view.right);
+    v.view_y = to_float(glm::transpose(to_world) * down);
+    v.view_z = to_float(glm::transpose(to_world) * view.forward);
+    v.anchor_x = static_cast<float>(glm::dot(view.right, anchor_view));
+    v.anchor_y = static_cast<float>(glm::dot(down, anchor_view));
+    v.anchor_z = static_cast<float>(glm::dot(view.forward, anchor_view));
+    v.eye = to_float(to_index * -anchor_view);
     p.tan_half_x = static_cast<float>(view.tan_half_y * size.x / size.y);
     p.tan_half_y = static_cast<float>(view.tan_half_y);
-    p.ray_x = to_float(to_index * view.right);
-    p.ray_y = to_float(to_index * down);
-    p.ray_z = to_float(to_index * view.forward);
-    p.sheet_thickness = static_cast<float>(thickness);
-    p.near_depth = static_cast<float>(voxel_along_view);
-    p.index_to_world = glm::mat3(to_world);
-    p.normal_to_world = glm::mat3(glm::transpose(to_index));
+    v.ray_x = to_float(to_index * view.right);
+    v.ray_y = to_float(to_index * down);
+    v.ray_z = to_float(to_index * view.forward);
+    v.near_depth = static_cast<float>(voxel_along_view);
+    v.index_to_world = glm::mat3(to_world);
+    v.normal_to_world = glm::mat3(glm::transpose(to_index));
     p.background = to_float(scene.background);
     plan.gradient = payload == shader::PAYLOAD_COLOR && scene.effects.background_top.has_value();
     if (plan.gradient) p.background_top = to_float(*scene.effects.background_top);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        p.materials[m] = glm::vec4(to_float(scene.materials[m].color),
+        v.materials[m] = glm::vec4(to_float(scene.materials[m].color),
                                    static_cast<float>(bounded(scene.materials[m].extinction, volume.geometry)));
     }
 
-    p.band = static_cast<float>(edge_reach(settings));
-    p.translucent_mask = materials_carried_beside(settings, scene, geometry);
-    p.table_depth = static_cast<float>(table_depth(scene, geometry));
+    v.band = static_cast<float>(edge_reach(settings));
+    v.translucent_mask = materials_carried_beside(settings, scene, geometry);
+    v.table_depth = static_cast<float>(table_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && has_single_piece(settings, scene, geometry);
@@ -500,28 +527,18 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     if (sliced) {
         nearest -= reach;
         farthest += reach;
-        plan.sheets_per_splat = static_cast<std::uint32_t>(std::min(std::floor(2 * reach / thickness), 32766.0)) + 2;
     }
-    const double base = std::floor(std::max(nearest, 0.0) / thickness);
-    const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
-    if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
-        fail(
-            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; at most {:.0f} are possible: choose "
-            "a larger --sheet-spacing",
-            sheets, thickness, base, kMaxSheets);
-    }
-    const std::uint64_t layer_bytes = 16 * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
-    p.sheet_base = static_cast<int>(base);
-    p.sheet_zero = static_cast<float>(base * thickness - glm::dot(view.forward, anchor_view));
-    p.sheet_count = static_cast<std::uint32_t>(sheets);
-    p.sheets_per_group = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));
-    p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
-    p.dims = geometry.dims;
+    plan.depths = {.nearest = nearest,
+                   .farthest = farthest,
+                   .anchor = glm::dot(view.forward, anchor_view),
+                   .reach = reach,
+                   .thickness = sheet_thickness(geometry, camera, settings)};
+    p.size = size;
+    place_sheets(plan);
+    v.dims = geometry.dims;
     p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
     draw_first(plan, static_cast<std::uint32_t>(splats.count));
     plan.reach = farthest_reach;
-    p.size = size;
     // Optical depth never saturates: the sum is no opacity.
     p.saturation =
         payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
@@ -530,13 +547,14 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 
 void shift_rays(FramePlan& plan, const glm::dvec2& offset) {
     // A sheared view: drawn slopes = ray slopes - slopes of the offset.
-    auto& p = plan.params;
+    const auto& p = plan.params;
+    auto& v = plan.volume;
     const glm::vec2 slopes = glm::vec2(offset) * 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(p.size);
-    p.view_x -= slopes.x * p.view_z;
-    p.view_y -= slopes.y * p.view_z;
-    p.anchor_x -= slopes.x * p.anchor_z;
-    p.anchor_y -= slopes.y * p.anchor_z;
-    p.ray_z += slopes.x * p.ray_x + slopes.y * p.ray_y;
+    v.view_x -= slopes.x * v.view_z;
+    v.view_y -= slopes.y * v.view_z;
+    v.anchor_x -= slopes.x * v.anchor_z;
+    v.anchor_y -= slopes.y * v.anchor_z;
+    v.ray_z += slopes.x * v.ray_x + slopes.y * v.ray_y;
 }
 
 }  // namespace edgesplat

@@ -96,22 +96,33 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
 /// Thickness of a picture's sheets along the view direction, mm.
 double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, const Settings& settings);
 
+/// Where splats lie along the view axis, mm from the eye.
+struct SplatDepths {
+    double nearest = 0, farthest = 0;  ///< of their voxels; in sliced views of their kernels
+    double anchor = 0;                 ///< VolumeParams::anchor
+    double reach = 0;                  ///< how far a kernel reaches from its voxel
+    double thickness = 0;              ///< of a sheet
+};
+
 /// Plan of passes 3 to 7 for one picture.
 struct FramePlan {
     passes::DrawVariant variant{};
-    bool gradient = false;                ///< the background has two colours
-    bool wide_marks = false;              ///< a mark covers 4 x 2 pixels (4_mark_pixels)
-    bool refined = false;                 ///< some pixels are drawn, others interpolated (5_refine_pixels)
-    bool may_refine = false;              ///< `refined` before the splats' sizes are known
-    bool first = true;                    ///< of the parts of a picture that are drawn one after another
-    std::uint32_t sheets_per_splat = 1;   ///< upper bound of a splat's entries in the sorted order
-    std::uint32_t sort_segments = 1;      ///< number of segments of each of the sort's blocks
-    double reach = 0;                     ///< farthest reach of any kernel, voxels
-    std::vector<std::uint32_t> bricks;    ///< numbers of the bricks in view; empty without culling
-    std::vector<glm::vec3> label_colors;  ///< FrameParams::label_colors; empty without labels
-    std::vector<glm::uvec2> batches;      ///< FrameParams::batches; empty without culling
-    std::uint64_t splats_examined = 0;    ///< splats examined
-    shader::FrameParams params{};         ///< addresses unset
+    bool gradient = false;                       ///< the background has two colours
+    bool wide_marks = false;                     ///< a mark covers 4 x 2 pixels (4_mark_pixels)
+    bool refined = false;                        ///< some pixels are drawn, others interpolated (5_refine_pixels)
+    bool may_refine = false;                     ///< `refined` before the splats' sizes are known
+    bool first = true;                           ///< of the parts of a picture that are drawn one after another
+    std::uint32_t sheets_per_splat = 1;          ///< upper bound of a splat's entries in the sorted order
+    std::uint32_t sort_segments = 1;             ///< number of segments of each of the sort's blocks
+    double reach = 0;                            ///< farthest reach of any kernel, voxels
+    std::vector<std::uint32_t> bricks;           ///< numbers of the bricks in view; empty without culling
+    std::vector<glm::vec3> label_colors;         ///< FrameParams::label_colors; empty without labels
+    std::vector<glm::uvec2> batches;             ///< FrameParams::batches; empty without culling
+    std::uint64_t splats_examined = 0;           ///< splats examined
+    shader::FrameParams params{};                ///< addresses unset
+    shader::VolumeParams volume{};               ///< likewise
+    std::vector<shader::VolumeParams> together;  ///< other volumes whose kernels are drawn with these (plan_together)
+    SplatDepths depths;
 };
 
 /// Restricts the picture to the first `splats` of the list and turns brick culling off.
@@ -122,6 +133,9 @@ void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& v
 
 /// Restricts the picture to the splats of these bricks (ascending numbers), unless their batches cover the whole list.
 void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers);
+
+/// Restricts the picture to batches of splats: the first number of each, and how many, at most SPLAT_BATCH.
+void draw_batches(FramePlan& plan, std::vector<glm::uvec2> batches);
 
 /// Number, bounding box and kinds of a list's splats.
 struct SplatExtent {
@@ -139,9 +153,16 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                      const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats,
                      double farthest_reach = 0, bool refines = true);
 
+/// Divides the picture's depths into sheets, from FramePlan::depths and the picture's size. Throws Error likewise.
+void place_sheets(FramePlan& plan);
+
 /// Writes a scene's clip planes in the shaders' form, relative to the index-space point `origin`.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
                              glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]);
+
+/// The plan of kernels of several volumes as one list, each volume's from its own plan. `plans`: from one camera, with
+/// one payload; 2 to MAX_TOGETHER. Their splats are numbered one after another.
+FramePlan plan_together(std::span<const FramePlan> plans);
 
 /// Shifts the rays of a plan: pixel (x, y) gets the ray through (x + offset.x, y + offset.y), in pixels.
 void shift_rays(FramePlan& plan, const glm::dvec2& offset);

@@ -20,6 +20,7 @@ using L = SplatLists;
 using T = TargetResources;
 using S = shader::SceneParams;
 using F = shader::FrameParams;
+using P = shader::VolumeParams;
 
 constexpr std::uint64_t kWord = sizeof(std::uint32_t), kPair = 2 * kWord;
 constexpr vk::Format kNoTexels = vk::Format::eUndefined, kSums = vk::Format::eR32G32B32A32Sfloat;
@@ -37,6 +38,10 @@ constexpr gpu::ImageShape plane_of(vk::Format format, vk::ImageUsageFlags usage)
 
 std::uint64_t splats(const FramePlan& plan) {
     return plan.params.splat_count;
+}
+/// Slots of the splats at most: of several volumes, each volume's last batch may be shorter.
+std::uint64_t slots(const FramePlan& plan) {
+    return splats(plan) + plan.params.volume_count * shader::SPLAT_BATCH;
 }
 std::uint64_t sheets(const FramePlan& plan) {
     return plan.params.sheet_count;
@@ -123,19 +128,19 @@ const std::array kCollectionBuffers{
 };
 
 const std::array kSplatLists{
-    row<SplatListRow>(text("splat list", "(splats) Splat", "2", "3, 5"), &L::splats, &S::splats, &F::splats,
+    row<SplatListRow>(text("splat list", "(splats) Splat", "2", "3, 5"), &L::splats, &S::splats, &P::splats,
                       [](const CollectionPlan&) { return std::uint64_t{sizeof(shader::Splat)}; }),
-    row<SplatListRow>(text("splat traits", "(splats) second derivatives", "2", "5"), &L::traits, &S::traits, &F::traits,
+    row<SplatListRow>(text("splat traits", "(splats) second derivatives", "2", "5"), &L::traits, &S::traits, &P::traits,
                       [](const CollectionPlan& p) { return p.faces ? kPair : 0; }),
-    row<SplatListRow>(text("classified values", "(splats) float", "2", "5"), &L::values, &S::values, &F::values,
+    row<SplatListRow>(text("classified values", "(splats) float", "2", "5"), &L::values, &S::values, &P::values,
                       [](const CollectionPlan& p) { return p.transfer.empty() ? 0 : kWord; }),
-    row<SplatListRow>(text("splat labels", "(splats) uint", "2", "5"), &L::labels, &S::labels, &F::labels,
+    row<SplatListRow>(text("splat labels", "(splats) uint", "2", "5"), &L::labels, &S::labels, &P::labels,
                       [](const CollectionPlan& p) { return p.labels != 0 ? kWord : 0; }),
 };
 
 const std::array kLightLists{
-    row<LightListRow>(text("splat occlusion", "(splats) uint", "2b", "5"), &L::occlusion, &F::splat_occlusion),
-    row<LightListRow>(text("splat shadows", "(splats) uint", "2c", "5"), &L::shadows, &F::splat_shadows),
+    row<LightListRow>(text("splat occlusion", "(splats) uint", "2b", "5"), &L::occlusion, &P::splat_occlusion),
+    row<LightListRow>(text("splat shadows", "(splats) uint", "2c", "5"), &L::shadows, &P::splat_shadows),
 };
 
 const std::array kTargetImages{
@@ -170,8 +175,8 @@ const std::array kTargetImages{
 
 const std::array kTargetBuffers{
     row<TargetBufferRow>(
-        text("frame parameters", "(1) FrameParams", "host", "3-7"), &T::frame, nullptr, Place::Host, kNoTexels,
-        kUnbound, [](const FramePlan&, const Profile&) { return std::uint64_t{sizeof(F)}; }, true),
+        text("frame parameters", "(1) FrameBlock", "host", "3-7"), &T::frame, nullptr, Place::Host, kNoTexels, kUnbound,
+        [](const FramePlan&, const Profile&) { return std::uint64_t{sizeof(shader::FrameBlock)}; }, true),
     row<TargetBufferRow>(
         text("drawn splats", "(3) uint", "4, 5", "host"), &T::drawn, &F::drawn, Place::Host, kNoTexels, kUnbound,
         [](const FramePlan&, const Profile&) { return 3 * kWord; }, true),
@@ -186,13 +191,13 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(
         text("batches of splats", "(batches) first, count", "host", "3, 4"), &T::batches, &F::batches, Place::Shared,
         kNoTexels, kUnbound,
-        [](const FramePlan& p, const Profile&) { return (splats(p) / shader::SPLAT_BATCH + 1) * kPair; }),
+        [](const FramePlan& p, const Profile&) { return (slots(p) / shader::SPLAT_BATCH + 1) * kPair; }),
     row<TargetBufferRow>(
         text("label colours", "(labels) vec3", "host", "4, 5"), &T::label_colors, &F::label_colors, Place::Host,
         kNoTexels, kUnbound,
         [](const FramePlan& p, const Profile&) { return p.label_colors.size() * std::uint64_t{sizeof(glm::vec3)}; }),
     row<TargetBufferRow>(text("sheets of splats", "(slots) uint", "3", "4, 5"), &T::sheet_of, &F::sheets, Place::Device,
-                         kNoTexels, kUnbound, [](const FramePlan& p, const Profile&) { return splats(p) * kWord; }),
+                         kNoTexels, kUnbound, [](const FramePlan& p, const Profile&) { return slots(p) * kWord; }),
     row<TargetBufferRow>(text("splat order", "(splats x sheets each) uint", "4", "5"), &T::order, &F::order,
                          Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return splats(p) * p.sheets_per_splat * kWord; }),

@@ -49,7 +49,7 @@ struct SplatListRow {
     ResourceText text;
     gpu::Buffer SplatLists::*list;
     shader::Address shader::SceneParams::*collected;  ///< its address for pass 2
-    shader::Address shader::FrameParams::*drawn;      ///< its address for a picture's passes
+    shader::Address shader::VolumeParams::*drawn;     ///< its address for a picture's passes
     std::uint64_t (*bytes)(const CollectionPlan&);    ///< size of an element; 0: no list
 };
 std::span<const SplatListRow> splat_list_rows();
@@ -58,7 +58,7 @@ std::span<const SplatListRow> splat_list_rows();
 struct LightListRow {
     ResourceText text;
     gpu::Buffer SplatLists::*list;
-    shader::Address shader::FrameParams::*drawn;
+    shader::Address shader::VolumeParams::*drawn;
 };
 inline constexpr std::uint64_t kLightBytes = 4;
 std::span<const LightListRow> light_list_rows();

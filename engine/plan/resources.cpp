@@ -17,7 +17,7 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
         no_images_.emplace_back(device, shape, kPlaceholder.name);
     for (const vk::Format format : placeholder_texels())
         no_texels_.emplace_back(device, kPlaceholderBytes, gpu::Buffer::Place::Device, kPlaceholderTexels.name, format);
-    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, kPlaceholderBlock.name);
+    no_block_ = gpu::Buffer(device, sizeof(shader::FrameBlock), gpu::Buffer::Place::Host, kPlaceholderBlock.name);
 }
 
 void Bindings::prepare(gpu::Commands& commands) const {

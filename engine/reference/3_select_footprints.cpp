@@ -89,8 +89,18 @@ double sheet_thickness(const View& view, const Settings& settings) {
     return settings.sheet_spacing * view.mm_per_voxel_along;
 }
 
-int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
-                const Footprints& footprints) {
+int Sheets::first() const {
+    return std::isinf(nearest) ? 0 : static_cast<int>(std::max(std::floor(nearest / thickness), 0.0));
+}
+
+Sheets Sheets::with(const Sheets& other) const {
+    return {std::min(nearest, other.nearest), std::min(thickness, other.thickness)};
+}
+
+Sheets sheets_of(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
+                 const Footprints& footprints) {
+    Sheets sheets{.thickness = sheet_thickness(view, settings)};
+    if (records.empty()) return sheets;
     glm::dvec3 low(field.dims);
     glm::dvec3 high(0);
     for (const SplatRecord& record : records) {
@@ -98,22 +108,22 @@ int first_sheet(std::span<const SplatRecord> records, const Field& field, const 
         low = glm::min(low, x);
         high = glm::max(high, x);
     }
-    double nearest = std::numeric_limits<double>::max();
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 at((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                             (corner & 4) != 0 ? high.z : low.z);
-        nearest = std::min(nearest, view.depth(at));
+        sheets.nearest = std::min(sheets.nearest, view.depth(at));
     }
-    if (settings.sheets == SheetCut::Sliced) nearest -= footprints.farthest_reach() * depth_of_unit(view);
-    return static_cast<int>(std::max(std::floor(nearest / sheet_thickness(view, settings)), 0.0));
+    if (settings.sheets == SheetCut::Sliced) sheets.nearest -= footprints.farthest_reach() * depth_of_unit(view);
+    return sheets;
 }
 
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
-                                        const Settings& settings, const Footprints& footprints, const IndexClip& clip) {
+                                        const Settings& settings, const Footprints& footprints, const Sheets& sheets,
+                                        const IndexClip& clip) {
     std::vector<Selected> selected(records.size());
     if (records.empty()) return selected;
-    const double thickness = sheet_thickness(view, settings);
-    const int base = first_sheet(records, field, view, settings, footprints);
+    const double thickness = sheets.thickness;
+    const int base = sheets.first();
     const auto sheet_of = [&](double z) { return static_cast<int>(std::max(std::floor(z / thickness), 0.0)) - base; };
     for (std::size_t i = 0; i < records.size(); ++i) {
         Selected& s = selected[i];

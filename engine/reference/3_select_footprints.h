@@ -1,6 +1,7 @@
 // Pass 3: culls splats and finds the sheet of each remaining one (docs/method/3_select_footprints.md).
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -65,13 +66,25 @@ struct Selected {
 /// Thickness of a sheet, mm along the view axis.
 double sheet_thickness(const View& view, const Settings& settings);
 
-/// Number of sheet 0 of the picture, counted from the eye.
-int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
-                const Footprints& footprints);
+/// The sheets of a picture.
+struct Sheets {
+    double nearest = std::numeric_limits<double>::infinity();  ///< depth of the nearest splat, mm from the eye
+    double thickness = std::numeric_limits<double>::infinity();
+
+    /// Number of sheet 0 of the picture, counted from the eye.
+    int first() const;
+    /// How far in front of sheet `number` of the picture it lies, mm from the eye.
+    double depth(double number) const { return thickness * (first() + number); }
+    /// Those that hold the splats of both.
+    Sheets with(const Sheets& other) const;
+};
+
+Sheets sheets_of(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
+                 const Footprints& footprints);
 
 /// One entry per record. Splats that `clip` (index space) cuts away whole are culled.
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
-                                        const Settings& settings, const Footprints& footprints,
+                                        const Settings& settings, const Footprints& footprints, const Sheets& sheets,
                                         const IndexClip& clip = {});
 
 }  // namespace edgesplat::reference

@@ -1,6 +1,7 @@
 #include "engine/reference/reference_renderer.h"
 
 #include <algorithm>
+#include <deque>
 
 #include "engine/error.h"
 #include "engine/image/sample_mean.h"
@@ -135,8 +136,10 @@ const PreparedVolume* PreparedVolume::kernel_part() const {
     return translucent_ ? translucent_.get() : surface_scene_ || !has_matter(scene_) ? nullptr : this;
 }
 
-View PreparedVolume::view_of(const Camera& camera, int width, int height, Output output) const {
-    View view(camera, volume_->geometry, width, height);
+View PreparedVolume::view_of(const Camera& camera, const glm::ivec2& size, const glm::dvec2& offset,
+                             Output output) const {
+    View view(camera, volume_->geometry, size.x, size.y);
+    view.offset = offset;
     if (scene_.effects.antialias) view.low_pass = 1.0 / (output == Output::Color ? scene_.effects.samples : 1);
     return view;
 }
@@ -164,13 +167,14 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     // Optical depth needs all voxels.
     const bool whole = output == Output::Tau;
     if (whole && !added_.empty()) fail("output tau: is of one volume, but the scene has several");
-    std::vector<const PreparedVolume*> surfaces;
-    const PreparedVolume* front = whole ? this : kernel_part();
-    if (const PreparedVolume* part = whole ? nullptr : opaque_part()) surfaces.push_back(part);
-    for (const auto& volume : added_) {
-        if (const PreparedVolume* part = volume->opaque_part()) surfaces.push_back(part);
-        if (!front) front = volume->kernel_part();
-    }
+    std::vector<const PreparedVolume*> surfaces, translucent;
+    const auto add_parts = [&](const PreparedVolume& volume) {
+        if (const PreparedVolume* part = whole ? nullptr : volume.opaque_part()) surfaces.push_back(part);
+        if (const PreparedVolume* part = whole ? &volume : volume.kernel_part()) translucent.push_back(part);
+    };
+    add_parts(*this);
+    for (const auto& volume : added_)
+        add_parts(*volume);
     std::vector<LightMatter> matter;
     if (has_matter(lighting_)) matter.push_back(light_matter());
     for (const auto& volume : added_)
@@ -178,24 +182,16 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     std::vector<std::vector<SplatRecord>> lit;
     for (const PreparedVolume* part : surfaces)
         lit.push_back(part->lit_surfaces(output, matter));
-    const std::vector<SplatRecord> kernels =
-        front ? front->lit_kernels(camera.eye, output, matter) : std::vector<SplatRecord>{};
+    std::vector<Kernels> kernels;
+    for (const PreparedVolume* part : translucent)
+        kernels.push_back({part, part->lit_kernels(camera.eye, output, matter)});
     const auto drawn = [&](const glm::dvec2& offset) {
-        const auto view_of_part = [&](const PreparedVolume& part) {
-            View view = part.view_of(camera, width, height, output);
-            view.offset = offset;
-            return view;
-        };
         SurfacePicture seen;
         for (std::size_t i = 0; i < surfaces.size(); ++i)
-            surfaces[i]->add_surfaces(seen, lit[i], view_of_part(*surfaces[i]), output);
-        if (front) {
-            const View view = view_of_part(*front);
-            for (std::size_t i = 0; i < seen.pixels.size(); ++i)
-                for (SeenSurface& surface : seen.pixels[i])
-                    surface.way /= mm_along(view, i);
-            return front->draw(kernels, view, output, surfaces.empty() ? nullptr : &seen);
-        }
+            surfaces[i]->add_surfaces(seen, lit[i], surfaces[i]->view_of(camera, {width, height}, offset, output),
+                                      output);
+        if (!kernels.empty())
+            return draw(kernels, camera, {width, height}, offset, output, surfaces.empty() ? nullptr : &seen);
         std::vector<glm::dvec4> frame = composited(seen);
         frame.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), glm::dvec4(0));
         if (!seen.outlines.empty()) frame = smoothed(frame, seen.outlines, width, height);
@@ -299,12 +295,13 @@ std::vector<SplatRecord> PreparedVolume::lit_kernels(const glm::dvec3& eye, Outp
 
 namespace {
 
-/// Where the rays of the pixels end at solid surfaces.
-std::vector<double> ends_of(const SurfacePicture& picture) {
+/// Where the rays of the pixels end at solid surfaces, voxels from the eye. The picture's ways are in mm.
+std::vector<double> ends_of(const SurfacePicture& picture, const View& view) {
     std::vector<double> ends;
     for (const auto& surfaces : picture.pixels) {
         const auto solid = std::ranges::find_if(surfaces, &SeenSurface::solid);
-        ends.push_back(solid == surfaces.end() ? std::numeric_limits<double>::infinity() : solid->way);
+        ends.push_back(solid == surfaces.end() ? std::numeric_limits<double>::infinity()
+                                               : solid->way / mm_along(view, ends.size()));
     }
     return ends;
 }
@@ -320,65 +317,115 @@ void pass_surfaces(glm::dvec4& sum, const std::array<SeenSurface, 2>& surfaces, 
 
 }  // namespace
 
-Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& view, Output output,
-                           const SurfacePicture* behind) const {
-    const Field f = field();
-    const VolumeGeometry& geometry = volume_->geometry;
-    const int width = view.width, height = view.height;
-    const std::vector<Selected> selected =
-        select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
-    const SortedSheets sorted = sort_sheets(selected);
-    const bool one_piece = output != Output::Tau && has_single_piece(settings_, scene_, geometry);
-    const Footprints drawn(settings_, table_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
-    const std::vector<double> ends = behind ? ends_of(*behind) : std::vector<double>{};
-    const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn, ends);
+/// Kernels of a volume in the sheets of a picture.
+class PreparedVolume::DrawnKernels {
+  public:
+    DrawnKernels(const Kernels& kernels, const View& view, const Sheets& sheets, Output output,
+                 const SurfacePicture* behind)
+        : view_(view),
+          field_(kernels.part->field()),
+          ends_(behind ? ends_of(*behind, view) : std::vector<double>{}),
+          selected_(select_footprints(kernels.records, field_, view_, kernels.part->settings_,
+                                      kernels.part->footprints_, sheets,
+                                      index_clip(kernels.part->scene_.effects.clip, view.geometry))),
+          sorted_(sort_sheets(selected_)),
+          footprints_(
+              kernels.part->settings_, table_depth(kernels.part->scene_, view.geometry),
+              output != Output::Tau && has_single_piece(kernels.part->settings_, kernels.part->scene_, view.geometry)
+                  ? FacePieces::Longer
+                  : FacePieces::Both),
+          drawer_(kernels.records, selected_, field_, kernels.part->scene_, view_, kernels.part->settings_, footprints_,
+                  ends_) {}
+
+    std::size_t sheets() const { return sorted_.sheets(); }
+    std::span<const std::uint32_t> sheet(std::size_t number) const {
+        return number < sheets() ? sorted_.sheet(number) : std::span<const std::uint32_t>();
+    }
+    /// All splats, each once.
+    std::vector<std::uint32_t> all() const {
+        std::vector<std::uint32_t> once = sorted_.order;
+        std::sort(once.begin(), once.end());
+        once.erase(std::unique(once.begin(), once.end()), once.end());
+        return once;
+    }
+    const SplatDrawer& drawer() const { return drawer_; }
+
+  private:
+    View view_;
+    Field field_;
+    std::vector<double> ends_;
+    std::vector<Selected> selected_;
+    SortedSheets sorted_;
+    Footprints footprints_;
+    SplatDrawer drawer_;
+};
+
+Image PreparedVolume::draw(std::span<const Kernels> kernels, const Camera& camera, const glm::ivec2& size,
+                           const glm::dvec2& offset, Output output, const SurfacePicture* behind) {
+    // What is the same for all volumes: the picture's size, the camera, background and effects.
+    const PreparedVolume& any = *kernels.front().part;
+    const Settings& settings = any.settings_;
+    const int width = size.x, height = size.y;
+    std::vector<View> views;
+    Sheets sheets;
+    double before = 0;  // how far kernels reach in front of their sheets, mm
+    bool smooth = false;
+    for (const Kernels& one : kernels) {
+        const PreparedVolume& part = *one.part;
+        const View& view = views.emplace_back(part.view_of(camera, size, offset, output));
+        sheets = sheets.with(sheets_of(one.records, part.field(), view, part.settings_, part.footprints_));
+        const double unit = glm::length(glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward);
+        before = std::max(before, unit * uncut_kernel(part.settings_, part.scene_, view.geometry).radius);
+        smooth = smooth || (output == Output::Color && smooths_outlines(part.settings_, part.scene_));
+    }
+    std::deque<DrawnKernels> lists;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < kernels.size(); ++i)
+        count = std::max(count, lists.emplace_back(kernels[i], views[i], sheets, output, behind).sheets());
 
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<glm::dvec4> frame(pixels, glm::dvec4(0));
     // Optical depth is a plain sum, so it needs no sheets.
     if (output == Output::Tau) {
-        std::vector<std::uint32_t> once = sorted.order;
-        std::sort(once.begin(), once.end());
-        once.erase(std::unique(once.begin(), once.end()), once.end());
-        drawer.draw(once, Payload::Color, {}, frame);
-        return resolve(frame, width, height, scene_, output);
+        for (const DrawnKernels& list : lists)
+            list.drawer().draw(list.all(), Payload::Color, {}, frame);
+        return resolve(frame, width, height, any.scene_, output);
     }
-    const double thickness = sheet_thickness(view, settings_);
-    const double base = records.empty() ? 0 : first_sheet(records, f, view, settings_, footprints_);
     std::vector<char> closed(pixels, 0);
     std::vector<glm::dvec4> sheet(pixels);
-    const bool smooth = output == Output::Color && smooths_outlines(settings_, scene_);
     std::vector<std::optional<Outline>> outlines(smooth ? pixels : 0);
     if (smooth && behind) outlines = behind->outlines;
     std::vector<std::size_t> passed(behind ? pixels : 0, 0);
-    const glm::dvec3 view_z = glm::transpose(geometry.index_to_world_axes) * view.frame.forward;
+    const View& view = views.front();
     // Surfaces before anything that this sheet, or one behind it, contains.
-    const auto pass = [&](double sheet_depth) {
+    const auto pass = [&](double depth) {
         for (std::size_t at = 0; at < passed.size(); ++at) {
-            const glm::dvec3 u = view.ray(static_cast<int>(at) % width, static_cast<int>(at) / width);
-            pass_surfaces(frame[at], behind->pixels[at], passed[at], sheet_depth / glm::dot(view_z, u));
+            const glm::dvec3 ray = view.geometry.index_to_world_axes *
+                                   view.ray(static_cast<int>(at) % width, static_cast<int>(at) / width);
+            const double along = glm::dot(view.frame.forward, ray) / glm::length(ray);
+            pass_surfaces(frame[at], behind->pixels[at], passed[at], depth / along);
         }
     };
-    for (std::size_t s = 0; s < sorted.sheets(); ++s) {
+    for (std::size_t s = 0; s < count; ++s) {
         if (s % kSheetsPerGroup == 0) {
             std::transform(frame.begin(), frame.end(), closed.begin(),
-                           [&](const glm::dvec4& v) { return v.w >= settings_.saturation ? 1 : 0; });
+                           [&](const glm::dvec4& v) { return v.w >= settings.saturation ? 1 : 0; });
         }
-        if (sorted.sheet(s).empty()) continue;
-        const double radius = uncut_kernel(settings_, scene_, geometry).radius;
-        pass(thickness * (base + static_cast<double>(s)) - radius * glm::length(view_z));
+        if (std::ranges::all_of(lists, [&](const DrawnKernels& list) { return list.sheet(s).empty(); })) continue;
+        const auto number = static_cast<double>(s);
+        pass(sheets.depth(number) - before);
         std::fill(sheet.begin(), sheet.end(), glm::dvec4(0));
         std::optional<DepthRange> cut;
-        if (settings_.sheets == SheetCut::Sliced) {
-            cut = {thickness * (base + static_cast<double>(s)), thickness * (base + static_cast<double>(s) + 1)};
-        }
-        drawer.draw(sorted.sheet(s), payload_for(output), closed, sheet, cut);
-        if (smooth) drawer.outline(sorted.sheet(s), frame, outlines, cut);
+        if (settings.sheets == SheetCut::Sliced) cut = {sheets.depth(number), sheets.depth(number + 1)};
+        for (const DrawnKernels& list : lists)
+            list.drawer().draw(list.sheet(s), payload_for(output), closed, sheet, cut);
+        for (const DrawnKernels& list : lists)
+            if (smooth) list.drawer().outline(list.sheet(s), frame, outlines, cut);
         composite_sheet(frame, sheet, closed);
     }
     pass(std::numeric_limits<double>::infinity());
     if (smooth) frame = smoothed(frame, outlines, width, height);
-    return resolve(frame, width, height, scene_, output);
+    return resolve(frame, width, height, any.scene_, output);
 }
 
 Image render(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings, int width,

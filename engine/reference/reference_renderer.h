@@ -69,11 +69,18 @@ class PreparedVolume {
     const PreparedVolume* kernel_part() const;
     /// Adds the surfaces on the view's rays to those of other volumes. Their ways are in mm.
     void add_surfaces(SurfacePicture& seen, std::span<const SplatRecord> lit, const View& view, Output output) const;
-    /// The view of the same camera in this volume.
-    View view_of(const Camera& camera, int width, int height, Output output) const;
-    /// One picture with one ray per pixel, of the scene's splats. `behind`: the surfaces at which rays end, else null.
-    Image draw(std::span<const SplatRecord> records, const View& view, Output output,
-               const SurfacePicture* behind = nullptr) const;
+    /// The view of the same camera in this volume, its rays moved by `offset`.
+    View view_of(const Camera& camera, const glm::ivec2& size, const glm::dvec2& offset, Output output) const;
+    /// Kernels of one volume.
+    struct Kernels {
+        const PreparedVolume* part;
+        std::vector<SplatRecord> records;
+    };
+    class DrawnKernels;
+    /// One picture with one ray per pixel, moved by `offset`, of the kernels of some volumes in the same sheets.
+    /// `behind`: the surfaces at which rays end, their ways in mm, else null.
+    static Image draw(std::span<const Kernels> kernels, const Camera& camera, const glm::ivec2& size,
+                      const glm::dvec2& offset, Output output, const SurfacePicture* behind);
 
     const Volume* volume_;
     Scene scene_;

@@ -14,7 +14,7 @@ layout(constant_id = SPEC_SILHOUETTE) const uint SILHOUETTE = 0u;
 
 // How a material responds to light.
 vec4 response_of(uint material) {
-    if (RESPONSE == 1u) return params.frame.responses[material];
+    if (RESPONSE == 1u) return params.of_volume.responses[material];
     return vec4(1.0, 1.0, 0.0, 1.0);
 }
 

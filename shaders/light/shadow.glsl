@@ -6,7 +6,7 @@
 layout(constant_id = SPEC_SHADOWS) const uint SHADOWS = 0u;
 
 // Of the two lights with shadows.
-vec2 lights_reach(uint splat) { return SHADOWS == 0u ? vec2(1.0) : unpackUnorm2x16(UintsRef(params.frame.splat_shadows).at[splat]); }
+vec2 lights_reach(uint splat) { return SHADOWS == 0u ? vec2(1.0) : unpackUnorm2x16(UintsRef(params.of_volume.splat_shadows).at[splat]); }
 
 // Of a scene's light. `reach`: of the two lights with shadows.
 float light_reach(vec2 reach, uint light) {

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 #include "shaders/common/groups.glsl"
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 #include "shaders/tiles/seen_surfaces.glsl"

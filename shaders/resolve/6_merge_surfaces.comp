@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 #include "shaders/common/groups.glsl"
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint how; };  // passes::Merge
 const uint ADD = 1u, TAKE = 2u;
 #include "shaders/tiles/pixel_slopes.glsl"
@@ -37,8 +37,8 @@ void main() {
     uint at = invocation_number(), width = uint(params.frame.size.x);
     if (at >= width * uint(params.frame.size.y)) return;
     vec2 slope = slopes_of(ivec2(at % width, at / width));
-    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    float mm = length(params.frame.index_to_world * u);
+    vec3 u = normalize(params.of_volume.ray_z + slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y);
+    float mm = length(params.of_volume.index_to_world * u);
     if (how == TAKE) {
         for (uint k = 0u; k < SEEN_SURFACES; ++k) {
             SeenSurface surface = nearest_surface(at, k);

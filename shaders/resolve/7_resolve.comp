@@ -12,7 +12,7 @@ layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 TEXEL_PIXELS(BIND_TILE_SHEETS, before, tile_sheets, load_before)  // the picture before this pass

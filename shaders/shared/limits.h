@@ -99,6 +99,7 @@ EDGESPLAT_CONSTANT int CHANGE_MARGIN = 11;  // voxels around a changed sample in
 EDGESPLAT_CONSTANT uint BRICK = 8u;  // voxels along each side of a brick
 EDGESPLAT_CONSTANT uint BRICK_ENDS = 1u << 31;  // in a list of bricks: matter may end in the brick
 EDGESPLAT_CONSTANT uint SPLAT_BATCH = 64u;  // splats of visible bricks that 3_select_footprints processes together
+EDGESPLAT_CONSTANT uint MAX_TOGETHER = 8u;  // volumes whose kernels are drawn as one list
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // gives the most even vertex cost on lavapipe in near and far views
 EDGESPLAT_CONSTANT uint MARKED_AT_ONCE = 32u;  // entries per word of marks; lists begin at multiples of it
@@ -173,7 +174,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_SURFACES, 46u)     /* 1: splats are surface splats */ \
     X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */ \
     X(SPEC_MIXED, 48u)        /* 1: surface splats draw opaque matter, kernels translucent matter in front of it */ \
-    X(SPEC_BESIDE, 49u)       /* 1: the matter that attenuates light is that of another volume than the splats' */
+    X(SPEC_BESIDE, 49u)       /* 1: the matter that attenuates light is that of another volume than the splats' */ \
+    X(SPEC_TOGETHER, 50u)     /* 1: kernels of several volumes are drawn as one list */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 void main() {

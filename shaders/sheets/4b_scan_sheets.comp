@@ -7,7 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 #include "shaders/common/row_sums.glsl"
 

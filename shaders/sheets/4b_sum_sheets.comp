@@ -7,7 +7,7 @@
 
 layout(local_size_x = 256) in;
 #include "shaders/common/groups.glsl"
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/common/row_sums.glsl"
 
 void main() {

@@ -9,7 +9,7 @@
 layout(local_size_x = 256) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 shared uvec2 together[256];  // sheets of the slots that are processed together

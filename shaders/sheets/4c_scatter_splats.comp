@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint segment; };  // segments of each block are processed one after another
 #include "shaders/sheets/sheets_of_slot.glsl"
 

@@ -5,7 +5,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint group; };
 layout(location = 0) out vec4 sheet;
 

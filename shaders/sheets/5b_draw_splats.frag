@@ -19,7 +19,7 @@ const uint MIXED = 0u;
 const float ray_end = 0.0;
 
 layout(early_fragment_tests) in;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(push_constant) uniform Push { uint group; };
 
@@ -59,10 +59,10 @@ void main() {
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
     // Computed from the pixel, not interpolated: devices round the corners of quads to fractions of a pixel.
     vec2 slope = (gl_FragCoord.xy * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
-    vec3 offset = start_plane.xyz + start_plane.w * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    vec3 offset = start_plane.xyz + start_plane.w * (slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y);
     if (ANTIALIAS == 1u) pixels = (slope - slopes) / params.frame.pixel;
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);
-    sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));
+    sheet = splat_value(p, u, dot(from_eye, u), length(params.of_volume.index_to_world * u));
 }

@@ -18,7 +18,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint group; };
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
@@ -47,7 +47,7 @@ void main() {
     uint nth = uint(gl_InstanceIndex) * QUADS_PER_INSTANCE + uint(gl_VertexIndex) / 4u;
     bool real = nth < sheets.count;
     uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
-    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Splat splat = SplatsRef(params.of_volume.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
     Projection p = place_splat(number, splat, e);
     uint layer = 0u;
@@ -60,8 +60,8 @@ void main() {
             uint sheet = min(first_sheet + s, params.frame.sheet_count - 1u);
             layer += nth_in_all >= UintsRef(params.frame.counters).at[sheet * SORT_BLOCKS + SORT_BLOCKS - 1u] ? 1u : 0u;
         }
-        float near = params.frame.sheet_zero + float(first_sheet + layer) * params.frame.sheet_thickness -
-                     dot(params.frame.view_z, p.position);
+        float near = params.of_volume.sheet_zero + float(first_sheet + layer) * params.frame.sheet_thickness -
+                     dot(params.of_volume.view_z, p.position);
         depths = vec2(near, near + params.frame.sheet_thickness);
         cut_support(p, depths);
     } else {
@@ -71,7 +71,7 @@ void main() {
 
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
     vec2 slope = mix(p.low, p.high, corner);
-    from_eye = p.position - params.frame.eye;
+    from_eye = p.position - params.of_volume.eye;
     start_plane = rays_beside(p, p.at_eye);
 
     SplatInputs s = splat_inputs(number, splat, e, p, depths);

@@ -7,7 +7,7 @@
 
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(binding = BIND_SHEETS) uniform sampler2DArray sheets;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint group; };
 layout(location = 0) out vec4 accumulated;
 

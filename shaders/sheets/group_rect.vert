@@ -6,7 +6,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint group; };
 
 void main() {

@@ -20,7 +20,7 @@ layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_PREPARED, rgba32f) uniform writeonly image2D prepared;
 layout(push_constant) uniform Push { uint chunk; };
 #include "shaders/splats/splat_projection.glsl"
@@ -38,5 +38,6 @@ void main() {
     if (entry >= part.y) return;
     uint sheet = 0u;
     if (SLICED == 1u) sheet = sheet_of_entry(entry);
-    keep_prepared(entry, prepared_splat(UintsRef(params.frame.order).at[entry], sheet));
+    uint own = enter_volume(UintsRef(params.frame.order).at[entry]);
+    keep_prepared(entry, prepared_splat(own, sheet));
 }

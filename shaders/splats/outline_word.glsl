@@ -18,6 +18,6 @@ uint outline_word(float level, vec2 rate) {
 // below.
 vec2 rate_across(vec3 gradient, float depth) {
     vec2 pixel = 2.0 * depth * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
-    return pixel * vec2(dot(gradient, params.frame.ray_x), dot(gradient, params.frame.ray_y));
+    return pixel * vec2(dot(gradient, params.of_volume.ray_x), dot(gradient, params.of_volume.ray_y));
 }
 #endif

@@ -17,21 +17,27 @@ struct PreparedSplat {
 float with_traced(float depth, bool traced) { return uintBitsToFloat(floatBitsToUint(depth) & ~1u | (traced ? 1u : 0u)); }
 bool conic_is_traced(SplatConic conic) { return (floatBitsToUint(conic.depth) & 1u) != 0u; }
 
+// The last bits of the extinction store the splat's volume if there are several.
+float with_volume(float extinction, uint volume) { return uintBitsToFloat(floatBitsToUint(extinction) & ~(MAX_TOGETHER - 1u) | volume); }
+uint volume_of(float extinction) { return floatBitsToUint(extinction) & MAX_TOGETHER - 1u; }
+
+// `number`: in its volume's list; enter_volume() has selected the volume.
 PreparedSplat prepared_splat(uint number, uint sheet) {
     PreparedSplat s;
-    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Splat splat = SplatsRef(params.of_volume.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
     Projection p = place_splat(number, splat, e);
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
-        float near = params.frame.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
+        float near = params.of_volume.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.of_volume.view_z, p.position);
         depths = vec2(near, near + params.frame.sheet_thickness);
         cut_support(p, depths);
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
+    if (TOGETHER == 1u) s.inputs.color_sigma.w = with_volume(s.inputs.color_sigma.w, volume_number);
     s.conic = splat_conic(p);
     if (TRACED == 1u) s.conic.depth = with_traced(s.conic.depth, (s.inputs.number_material.y & IS_TRACED) != 0u);
-    bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
+    bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.of_volume.view_z);
     vec4 beside = rays_beside(p, at_eye);
     s.start = beside.xyz;
     s.plane = beside.w;
@@ -100,7 +106,7 @@ SplatConic load_conic(uint entry) {
 // Reference point of the rays through an entry's splat: rays_beside().
 vec4 load_start(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START)); }
 
-// Reach of a surface splat's votes.
+// Reach of a surface splat's votes, or a kernel's extinction.
 float load_reach(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START + 1u)).w; }
 
 // Loads the data that draws an entry.

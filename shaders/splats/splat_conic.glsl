@@ -19,12 +19,12 @@ SplatConic splat_conic(Projection p) {
     float radius = reach_across(p) * 1.005 + 1e-4;
     vec3 view = view_position(p.position + p.centre);
     s.depth = view.z;
-    bool before = view.z > 1.05 * radius * length(params.frame.view_z);
+    bool before = view.z > 1.05 * radius * length(params.of_volume.view_z);
     vec2 slope = before ? view.xy / view.z : vec2(0.0);
     vec2 pixel = 2.0 * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
     s.centre = slope / pixel + 0.5 * vec2(params.frame.size);
-    vec3 w = params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
-    vec3 x = pixel.x * params.frame.ray_x, y = pixel.y * params.frame.ray_y;
+    vec3 w = params.of_volume.ray_z + slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y;
+    vec3 x = pixel.x * params.of_volume.ray_x, y = pixel.y * params.of_volume.ray_y;
     float wide = 1.0 / (radius * radius), ww = dot(w, w) * wide;
     vec2 with_w = vec2(dot(w, x), dot(w, y)) * wide / ww;
     vec3 across = vec3(dot(x, x), dot(x, y), dot(y, y)) * wide;

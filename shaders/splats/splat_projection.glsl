@@ -26,21 +26,21 @@ struct Projection {
 };
 
 vec3 view_position(vec3 position) {
-    return vec3(dot(params.frame.view_x, position) + params.frame.anchor_x, dot(params.frame.view_y, position) + params.frame.anchor_y,
-                dot(params.frame.view_z, position) + params.frame.anchor_z);
+    return vec3(dot(params.of_volume.view_x, position) + params.of_volume.anchor_x, dot(params.of_volume.view_y, position) + params.of_volume.anchor_y,
+                dot(params.of_volume.view_z, position) + params.of_volume.anchor_z);
 }
 
 // Whether rays find the splat's face.
 bool is_traced(uint number) {
-    uvec2 code = BendingsRef(params.frame.traits).at[number];
+    uvec2 code = BendingsRef(params.of_volume.traits).at[number];
     return (code.x & FACE_CREASED) == 0u && (code.y & FACE_TRACED) != 0u;
 }
 
 // Pixels that a voxel covers at a depth (mm), at most.
 float pixels_per_voxel(float depth) {
-    mat3 m = params.frame.index_to_world;
+    mat3 m = params.of_volume.index_to_world;
     float longest2 = max(dot(m[0], m[0]), max(dot(m[1], m[1]), dot(m[2], m[2])));
-    return sqrt(longest2) * float(params.frame.size.x) / (2.0 * params.frame.tan_half_x * max(depth, params.frame.near_depth));
+    return sqrt(longest2) * float(params.frame.size.x) / (2.0 * params.frame.tan_half_x * max(depth, params.of_volume.near_depth));
 }
 
 // Whether rays find a surface splat's face in this picture: where the error of the fitted face, stored as e.d2, shows.
@@ -52,8 +52,8 @@ float votes_before() { return SURFACE_REACH + (CREASES == 1u ? SURFACE_CREASE : 
 
 // Voxels on both sides of a face carry translucent matter. So its kernels are not moved: the depth is 0.
 FaceTraits traits_of(uint number, Edge e, uint material) {
-    uvec2 code = BendingsRef(params.frame.traits).at[number];
-    bool hides = (params.frame.translucent_mask >> material & 1u) == 0u;
+    uvec2 code = BendingsRef(params.of_volume.traits).at[number];
+    bool hides = (params.of_volume.translucent_mask >> material & 1u) == 0u;
     FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), no_plane(), NO_PLANE, hides ? FACE_DEPTH : 0.0);
     if (CREASES == 1u) {
         bool creased = (code.x & FACE_CREASED) != 0u;
@@ -62,14 +62,14 @@ FaceTraits traits_of(uint number, Edge e, uint material) {
         t.h = Bending(creased ? vec3(0.0) : t.h.diagonal, creased ? vec3(0.0) : t.h.mixed);
     }
     // The table contains plane faces only: slightly bent faces count as plane. It contains no walls.
-    bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.away >= CREASE_REACH;
+    bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.of_volume.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.away >= CREASE_REACH;
     t.h = Bending(flat_enough ? vec3(0.0) : t.h.diagonal, flat_enough ? vec3(0.0) : t.h.mixed);
     return t;
 }
 
 bool is_in_table(uint number, Edge e, uint material) {
     FaceTraits t = traits_of(number, e, material);
-    return t.deepest == params.frame.table_depth && e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.away >= CREASE_REACH;
+    return t.deepest == params.of_volume.table_depth && e.d2 >= params.of_volume.band && bending_norm(t.h) == 0.0 && t.crease.away >= CREASE_REACH;
 }
 
 // Bounds of a sphere's perspective image along one screen axis. s = slope of a plane through the eye, relative to the
@@ -108,10 +108,10 @@ vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, flo
 // The widened kernel is centred at the voxel. Splats so near that they may reach the eye are not widened.
 void filter_splat(inout Projection p) {
     vec2 pixel = p.view.z * params.frame.pixel;
-    vec3 u = normalize(p.position - params.frame.eye);
-    p.filtered = low_pass(pixel.x * params.frame.ray_x, pixel.y * params.frame.ray_y, u, params.frame.support);
-    float around = max(p.radius + length(p.centre), params.frame.support);
-    if (p.view.z < 2.0 * around * length(params.frame.view_z)) p.filtered.share = 0.0;
+    vec3 u = normalize(p.position - params.of_volume.eye);
+    p.filtered = low_pass(pixel.x * params.of_volume.ray_x, pixel.y * params.of_volume.ray_y, u, params.of_volume.support);
+    float around = max(p.radius + length(p.centre), params.of_volume.support);
+    if (p.view.z < 2.0 * around * length(params.of_volume.view_z)) p.filtered.share = 0.0;
     p.radius = p.filtered.share > 0.0 ? around : p.radius;
     p.centre = p.filtered.share > 0.0 ? vec3(0.0) : p.centre;
 }
@@ -119,18 +119,18 @@ void filter_splat(inout Projection p) {
 // Computes position and support; project_support() computes the position on the screen.
 Projection place_splat(uint number, Splat splat, Edge e) {
     Projection p;
-    uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
-    p.position = vec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny) - params.frame.anchor;
+    uint nx = uint(params.of_volume.dims.x), ny = uint(params.of_volume.dims.y);
+    p.position = vec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny) - params.of_volume.anchor;
     p.view = view_position(p.position);
     bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
-    vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
+    vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.of_volume.support);
     IF_ANY(FACES && cut_or_warped) {
         FaceTraits traits = traits_of(number, e, splat.edge >> 28);
         if (SURFACES == 1u) {
             bool creased = traits.crease.away < CREASE_REACH;
             support = vec2(creased ? 0.0 : e.d, SURFACE_REACH + (creased ? SURFACE_CREASE : 0.0));
         } else {
-            FaceCut cut = cut_of(e, traits, params.frame.band, CREASES == 1u);
+            FaceCut cut = cut_of(e, traits, params.of_volume.band, CREASES == 1u);
             support = vec2(cut.shift, cut.radius);
         }
         // Only the ray will find where the surface cuts the kernel.
@@ -148,18 +148,18 @@ float reach_across(Projection p) { return ANTIALIAS == 1u && p.filtered.share > 
 // Restricts the support to two depths, mm relative to the voxel centre. The part is a cap or a slice of the sphere. It
 // lies in the sphere around the circle in which the nearer plane cuts the support.
 void cut_support(inout Projection p, vec2 depths) {
-    float unit = length(params.frame.view_z);
-    float middle = dot(params.frame.view_z, p.centre);
+    float unit = length(params.of_volume.view_z);
+    float middle = dot(params.of_volume.view_z, p.centre);
     float to_slab = clamp(middle, depths.x, depths.y) - middle;
     float gap = min(abs(to_slab) / unit, p.radius);
-    p.centre += sign(to_slab) * gap / unit * params.frame.view_z;
+    p.centre += sign(to_slab) * gap / unit * params.of_volume.view_z;
     p.radius = sqrt(p.radius * p.radius - gap * gap);
 }
 
 void project_support(inout Projection p) {
     vec3 centre = view_position(p.position + p.centre);
     p.depth = centre.z;
-    float reach = p.radius * length(params.frame.view_z);
+    float reach = p.radius * length(params.of_volume.view_z);
     float across = reach_across(p);
     p.visible = centre.z + reach > 0.0;
     p.at_eye = centre.z < 1.05 * reach;
@@ -167,14 +167,14 @@ void project_support(inout Projection p) {
     vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     vec2 x, y;
     if (p.at_eye) {
-        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.radius, edge.x);
-        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.radius, edge.y);
+        x = slopes_at_eye(params.of_volume.view_x, params.of_volume.view_z, centre.x, centre.z, p.radius, edge.x);
+        y = slopes_at_eye(params.of_volume.view_y, params.of_volume.view_z, centre.y, centre.z, p.radius, edge.y);
     } else {
-        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, across);
-        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, across);
+        x = touching_slopes(params.of_volume.view_x - p.slope.x * params.of_volume.view_z, params.of_volume.view_z, centre.z, across);
+        y = touching_slopes(params.of_volume.view_y - p.slope.y * params.of_volume.view_z, params.of_volume.view_z, centre.z, across);
     }
     // A filter wider than its distance covers the whole picture.
-    if (ANTIALIAS == 1u && !p.at_eye && centre.z < 1.05 * across * length(params.frame.view_z)) x = y = vec2(-1e9, 1e9);
+    if (ANTIALIAS == 1u && !p.at_eye && centre.z < 1.05 * across * length(params.of_volume.view_z)) x = y = vec2(-1e9, 1e9);
     // Clipped slightly outside the picture, so that rounding loses no pixel.
     p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
     p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);
@@ -186,8 +186,8 @@ void project_support(inout Projection p) {
 // splat may reach the eye.
 vec4 rays_beside(Projection p, bool at_eye) {
     vec2 slopes = p.view.xy / p.view.z;
-    return at_eye ? vec4(params.frame.near_depth * params.frame.ray_z - (p.position - params.frame.eye), params.frame.near_depth)
-                  : vec4(-p.view.z * (slopes.x * params.frame.ray_x + slopes.y * params.frame.ray_y), p.view.z);
+    return at_eye ? vec4(params.of_volume.near_depth * params.of_volume.ray_z - (p.position - params.of_volume.eye), params.of_volume.near_depth)
+                  : vec4(-p.view.z * (slopes.x * params.of_volume.ray_x + slopes.y * params.of_volume.ray_y), p.view.z);
 }
 
 // The box in pixels: x0 y0 x1 y1, half open, clipped.

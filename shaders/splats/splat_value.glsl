@@ -10,7 +10,7 @@
 #include "footprints/face.glsl"
 #include "shaders/drivers/if_any.glsl"
 #include "engine/geometry/face_sight.glsl"
-#define CLIP_PARAMS params.frame
+#define CLIP_PARAMS params.of_volume
 #include "shaders/common/clip.glsl"
 #include "shaders/common/clip_ray.glsl"
 #include "footprints/in_float.glsl"
@@ -37,7 +37,7 @@ float footprint(float rho2, float pn, float un, Slice slice) {
 float filtered_rho2(float rho2) { return filtered.y * dot(pixels, pixels) + filtered.z * rho2; }
 
 // z from p where the ray passes the voxel's depth. The pixel filter lies across the view, so kernels keep their depths.
-float voxel_depth_on_ray(vec3 p, vec3 u) { return -dot(params.frame.view_z, p) / dot(params.frame.view_z, u); }
+float voxel_depth_on_ray(vec3 p, vec3 u) { return -dot(params.of_volume.view_z, p) / dot(params.of_volume.view_z, u); }
 
 // The footprint, blended with the widened one according to the pixel size. `z`: voxel_depth_on_ray.
 float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
@@ -51,12 +51,12 @@ float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
 
 // Payload of a splat where a ray enters its matter through a clip plane, at z from p.
 vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
-    vec3 world_normal = normalize(params.frame.normal_to_world * face);
+    vec3 world_normal = normalize(params.of_volume.normal_to_world * face);
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
-    float depth = dot(params.frame.view_z, from_eye + p + z * u);
+    float depth = dot(params.of_volume.view_z, from_eye + p + z * u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
-    vec3 to_eye = -normalize(params.frame.index_to_world * u);
+    vec3 entry = params.of_volume.index_to_world * (from_eye + p + z * u);
+    vec3 to_eye = -normalize(params.of_volume.index_to_world * u);
     return shade(Surface(matter, response_of(number_material.y & MATERIAL_BITS), lights_reach(number_material.x), true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
 }
 
@@ -72,8 +72,8 @@ VolumePiece volume_piece;
 
 VolumePiece piece_in_volume(vec3 u) {
     vec3 way = divisible(u);
-    VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, way, params.frame.dims);
-    mat3 to_world = params.frame.normal_to_world;
+    VolumeEnds ends = volume_ends(params.of_volume.anchor + params.of_volume.eye, way, params.of_volume.dims);
+    mat3 to_world = params.of_volume.normal_to_world;
     VolumePiece piece = VolumePiece(entry_of(ends), exit_of(ends), normalize(to_world * out_of_entry(ends, way)), vec3(0.0));
     if (FACE_PIECES == 2u) piece.far_normal = normalize(to_world * out_of_exit(ends, way));
     return piece;
@@ -90,13 +90,13 @@ vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead
     bool is_other = ((axis & 4u) != 0u ? -along : along) < 0.0;
     upward = upward != ((number_material.y & IS_MIXED) != 0u && is_other);
     vec3 outward = upward ? -slope : slope;
-    vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
+    vec3 world_normal = has_normal ? unit_or_zero(params.of_volume.normal_to_world * outward) : vec3(0.0);
     bool at_border = dot(border, border) > 0.0;
     if (at_border) world_normal = border;
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
-    vec3 way = params.frame.index_to_world * u;
+    vec3 way = params.of_volume.index_to_world * u;
     // Matter around the eye is seen right in front of it.
-    float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
+    float away = max(ahead + end.z, 1e-4), depth = away * dot(params.of_volume.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     return shade(Surface(color_sigma.rgb, response_of(number_material.y & MATERIAL_BITS), lights_reach(number_material.x), has_normal || at_border, world_normal,
                          ambient_reach(number_material.x, end.side < 0.0), away * way, -normalize(way), depth));
@@ -125,7 +125,7 @@ vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, fl
     f.entry.z = at_border ? border : f.entry.z;
     vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
     if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
-    bool deep = !plain && (params.frame.translucent_mask >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
+    bool deep = !plain && (params.of_volume.translucent_mask >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
     bool layer = deep && (number_material.y & IS_MIXED) != 0u;
     float half_chord = sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
     LitPath path = lit_path(f.entry.z, f.leave.z, at_border, far_border, half_chord, color_sigma.a * mm, layer, sight.ray.phi);
@@ -158,7 +158,7 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice, float mm) {
     FaceSight sight;
     if (FACES) sight = face_sight(p, u);
     float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
-    Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
+    Kept kept = kept_pieces(from_eye + params.of_volume.eye + p, u, -dot(from_eye, u));
     // Ends this far from the voxel do not cut its kernel; a whole piece has a closed form.
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
     float far = ANTIALIAS == 1u ? 8.0 + abs(z) : 8.0;
@@ -203,12 +203,12 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     float in_front = 1.0;
     if (FOOTPRINTS == TABLE) along_axis = dot(p, selected_footprint.axis);
     if (SLICED == 1u) {
-        float depth_along = dot(params.frame.view_z, u);
-        vec2 z = (shape.yz - dot(params.frame.view_z, p)) / depth_along;
+        float depth_along = dot(params.of_volume.view_z, u);
+        vec2 z = (shape.yz - dot(params.of_volume.view_z, p)) / depth_along;
         slice = Slice(z.x, z.y);
     } else if (CLIP_KEEP + CLIP_REMOVE == 0u) {
         // Only the part of the kernel in front of the eye counts.
-        in_front = smoothstep(-params.frame.support, params.frame.support, ahead);
+        in_front = smoothstep(-params.of_volume.support, params.of_volume.support, ahead);
     }
     if (MIXED == 1u) {
         // A kernel at the end of the ray is cut at the eye, too, so that nothing is left if the ray ends there.

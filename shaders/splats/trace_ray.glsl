@@ -74,7 +74,7 @@ Passing deepest(float z0, vec3 g0, float z1, vec3 g1, vec3 u, float inward) {
     return p;
 }
 
-uint outline_of_passing(Passing p, vec3 u) { return outline_word(p.level, rate_across(p.out_of, p.z * dot(params.frame.view_z, u))); }
+uint outline_of_passing(Passing p, vec3 u) { return outline_word(p.level, rate_across(p.out_of, p.z * dot(params.of_volume.view_z, u))); }
 
 // Traces the ray along u from `from`, within `kept`. Samples lie TRACE_STEP apart, at
 // positions independent of the beginning. An extra sample lies where the field may have an extremum beyond the

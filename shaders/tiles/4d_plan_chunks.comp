@@ -7,7 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 
 const uint SHEETS = gl_WorkGroupSize.x;
 shared uint pairs[SHEETS], ends[SHEETS];  // of the sheets being processed

@@ -5,7 +5,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range, store_range)
 #include "shaders/common/workgroup_sums.glsl"

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 256) in;
 #include "shaders/common/groups.glsl"
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range, store_range)
 #include "shaders/common/row_sums.glsl"

@@ -24,7 +24,7 @@ layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 #include "shaders/drivers/texels.glsl"
 TEXEL_WORDS(BIND_TILE_CLOSED, closed_pixels, tile_closed, load_closed)
@@ -47,7 +47,7 @@ uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
 
 // The smallest distance of two voxels, mm.
 float least_voxel() {
-    mat3 m = params.frame.index_to_world;
+    mat3 m = params.of_volume.index_to_world;
     return min(length(m[0]), min(length(m[1]), length(m[2])));
 }
 
@@ -78,9 +78,10 @@ void main() {
             uvec2 entry = load_entry(params.frame.entries_first + base + k);
             SplatConic conic;
             if (PREPARED == 1u) conic = load_conic(entry.x);
-            else conic = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y).conic;
+            else conic = prepared_splat(enter_volume(UintsRef(params.frame.order).at[entry.x]), entry.y).conic;
+            if (TOGETHER == 1u && PREPARED == 1u && REFINED == 1u) volume_number = volume_of(load_reach(entry.x));
             if (REFINED == 1u) {
-                float depth = max(conic.depth, params.frame.near_depth);
+                float depth = max(conic.depth, params.of_volume.near_depth);
                 finest = min(finest, least_voxel() / (depth * 2.0 * params.frame.tan_half_x / float(params.frame.size.x)));
             }
             if (TRACED == 1u) traced |= conic_is_traced(conic) ? 1u << k : 0u;

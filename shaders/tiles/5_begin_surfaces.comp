@@ -11,12 +11,12 @@ layout(local_size_x = 256) in;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 const uint CREASES = 0u, LABELS = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 #include "shaders/drivers/texels.glsl"
 ivec3 dims;
-#define CLIP_PARAMS params.frame
+#define CLIP_PARAMS params.of_volume
 #include "shaders/footprints/slice.glsl"
 #include "shaders/common/clip_ray.glsl"
 #include "footprints/in_float.glsl"
@@ -77,9 +77,9 @@ void main() {
     uint number = invocation_number();
     ivec2 size = params.frame.size, pixel = ivec2(number % uint(size.x), number / uint(size.x));
     if (pixel.y >= size.y) return;
-    dims = params.frame.dims;
+    dims = params.of_volume.dims;
     vec2 slope = slopes_of(pixel);
-    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y), from = params.frame.anchor + params.frame.eye;
+    vec3 u = normalize(params.of_volume.ray_z + slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y), from = params.of_volume.anchor + params.of_volume.eye;
     RayParts parts = ray_parts(u);
     SurfacePair pair = no_surfaces();
     begin_part(pair.front, parts.before, from, u);

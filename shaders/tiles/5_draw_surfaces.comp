@@ -22,7 +22,7 @@ layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
@@ -42,7 +42,7 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/splats/prepared_splat.glsl"
 FaceForm face_form;
 #include "shaders/tiles/outline.glsl"
-#define CLIP_PARAMS params.frame
+#define CLIP_PARAMS params.of_volume
 #include "shaders/common/clip_ray.glsl"
 #include "footprints/in_float.glsl"
 #include "engine/geometry/volume_ends.glsl"
@@ -106,8 +106,8 @@ void main() {
     uint evaluated = 0u;
     IF_ANY(open) {
         vec2 slope = slopes_of(pixel);
-        vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
-        vec3 way = params.frame.ray_z + across;
+        vec3 across = slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y;
+        vec3 way = params.of_volume.ray_z + across;
         float way_length = length(way);
         vec3 u = way / way_length;
         RayParts parts = ray_parts(u);
@@ -123,8 +123,8 @@ void main() {
             uvec4 words = marks_from(marks_at, base, length);
             while (has_marks(words) && open) {
                 uvec2 entry = load_entry(at + int(base + take_mark(words)));
-                bool hidden_all = begins_and_hides(pair.front, parts.before.first, params.frame.solid);
-                open = !hidden_all && !is_decided(pair, way_before(ways, entry.y), params.frame.solid);
+                bool hidden_all = begins_and_hides(pair.front, parts.before.first, params.of_volume.solid);
+                open = !hidden_all && !is_decided(pair, way_before(ways, entry.y), params.of_volume.solid);
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
@@ -179,7 +179,7 @@ void main() {
             }
         }
         IF_ANY(was_open) {
-            if (was_open) store_votes(held, pair, open || mean_chord(pair.front) < params.frame.solid);
+            if (was_open) store_votes(held, pair, open || mean_chord(pair.front) < params.of_volume.solid);
             if (OUTLINES == 1u && was_open) store_outline(held.y * size.x + held.x, outline);
             if (was_open && !open) store_pixel(held.y * size.x + held.x, vec4(0.0, 0.0, 0.0, 1.0));
         }

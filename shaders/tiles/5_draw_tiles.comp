@@ -31,7 +31,7 @@ layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 #include "shaders/drivers/texels.glsl"
@@ -61,7 +61,7 @@ vec4 filtered;
 FaceForm face_form;
 SelectedFootprint selected_footprint;
 float ray_end;  // where the ray ends at a surface, from the eye; only with MIXED
-#define CLIP_PARAMS params.frame
+#define CLIP_PARAMS params.of_volume
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/splats/prepared_splat.glsl"
 #include "shaders/splats/splat_value.glsl"
@@ -73,6 +73,25 @@ float ray_end;  // where the ray ends at a surface, from the eye; only with MIXE
 #include "shaders/drivers/rounds.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/seen_surfaces.glsl"
+
+// A pixel's ray in the index space of the splat's volume.
+struct VolumeRay {
+    vec3 across;       // per mm of depth, from the ray of slopes 0
+    float way_length;  // voxels per mm of depth
+    vec3 u;
+    float mm;          // per voxel
+};
+
+VolumeRay ray_in_volume(vec2 slope) {
+    VolumeRay ray;
+    ray.across = slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y;
+    vec3 way = params.of_volume.ray_z + ray.across;
+    ray.way_length = length(way);
+    ray.u = way / ray.way_length;
+    ray.mm = length(params.of_volume.index_to_world * ray.u);
+    if (FACES) volume_piece = piece_in_volume(ray.u);
+    return ray;
+}
 
 // A saturated pixel does not change any more.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
@@ -103,13 +122,9 @@ void main() {
     uint evaluated = 0u, shaded = 0u;
     IF_ANY(open) {
         vec2 slope = slopes_of(pixel);
-        vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
-        vec3 way = params.frame.ray_z + across;
-        float way_length = length(way);
-        vec3 u = way / way_length;
-        float mm = length(params.frame.index_to_world * u);
+        VolumeRay ray = ray_in_volume(slope);
+        float first_mm = ray.mm;
         normal_distance = vec4(0.0);
-        if (FACES) volume_piece = piece_in_volume(u);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint outline = NO_OUTLINE, number = uint(held.y * size.x + held.x);
@@ -117,7 +132,7 @@ void main() {
         SheetWays sheets;
         SeenWays surfaces;
         if (MIXED == 1u) {
-            sheets = sheet_ways(u, params.frame.support);
+            sheets = sheet_ways(ray.u, kernels_before());
             surfaces = seen_ways(number);
             ray_end = surfaces.last;
         }
@@ -152,7 +167,12 @@ void main() {
                 }
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
-                else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], sheet);
+                else h = prepared_splat(enter_volume(UintsRef(params.frame.order).at[entry.x]), sheet);
+                if (TOGETHER == 1u) {
+                    volume_number = volume_of(h.inputs.color_sigma.w);
+                    ray = ray_in_volume(slope);
+                    if (MIXED == 1u) ray_end = surfaces.last * (first_mm / ray.mm);
+                }
                 color_sigma = h.inputs.color_sigma;
                 normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
                 shape = vec3(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, SLICED == 1u ? h.inputs.shape.yz : vec2(0.0));
@@ -166,7 +186,7 @@ void main() {
                     matter = h.inputs.matter;
                     if (!FACES) number_material = h.inputs.number_material;
                 }
-                vec3 offset = h.start + h.plane * across;
+                vec3 offset = h.start + h.plane * ray.across;
                 if (ANTIALIAS == 1u) {
                     filtered = h.inputs.filtered;
                     pixels = (slope - h.slopes) / params.frame.pixel;
@@ -175,14 +195,14 @@ void main() {
                     ++evaluated;
                     shaded += open ? 1u : 0u;
                 }
-                float beyond = dot(offset, u);
-                vec3 p = offset - beyond * u;
-                float ahead = h.plane * way_length - beyond;
-                vec4 value = splat_value(p, u, ahead, mm);
+                float beyond = dot(offset, ray.u);
+                vec3 p = offset - beyond * ray.u;
+                float ahead = h.plane * ray.way_length - beyond;
+                vec4 value = splat_value(p, ray.u, ahead, ray.mm);
                 sheet_sum += value;
                 if (OUTLINES == 1u) {
                     bool shows = sum.a < OUTLINE_OPEN && face_form.cut.depth >= 0.0 && dot(p, p) < KERNEL_R2;
-                    outline = shows ? min(outline, outline_of(p, u, ahead, value.a)) : outline;
+                    outline = shows ? min(outline, outline_of(p, ray.u, ahead, value.a)) : outline;
                 }
             }
         }

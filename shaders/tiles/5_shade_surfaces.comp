@@ -15,7 +15,7 @@ layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
 const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, ANTIALIAS = 0u, NARROW = 1u, TRACED = 0u, NODES = 6u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
@@ -34,30 +34,30 @@ ivec3 dims;
 
 // Payload and opacity.
 vec4 seen_of(SurfaceVotes votes, vec3 u) {
-    float way = max(way_to(votes), 1e-4), depth = way * dot(params.frame.view_z, u);
+    float way = max(way_to(votes), 1e-4), depth = way * dot(params.of_volume.view_z, u);
     bool begun = votes.number >= BEGUN_MATTER;
-    vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
-    vec3 along = params.frame.index_to_world * u;
+    vec3 normal = unit_or_zero(params.of_volume.normal_to_world * votes.normal);
+    vec3 along = params.of_volume.index_to_world * u;
     uint material = begun ? votes.number - BEGUN_MATTER : votes.number >> 28;
     // With several materials in a body: that of the splat's own voxel.
     if (ISO_COUNT > 1u) {
         IF_ANY(!begun) {
-            uint at = begun ? 0u : SplatsRef(params.frame.splats).at[splat_of(votes.number)].voxel;
+            uint at = begun ? 0u : SplatsRef(params.of_volume.splats).at[splat_of(votes.number)].voxel;
             uint nx = uint(dims.x), ny = uint(dims.y);
             uint own = material_of(imageLoad(volume, ivec3(at % nx, at / nx % ny, at / nx / ny)).r);
             material = begun ? material : own;
         }
     }
-    float chord = mean_chord(votes), opacity = 1.0 - exp(-params.frame.materials[material].a * length(along) * chord);
+    float chord = mean_chord(votes), opacity = 1.0 - exp(-params.of_volume.materials[material].a * length(along) * chord);
     opacity = chord < 0.999 * SURFACE_CHORD ? opacity : 1.0;
     if (PAYLOAD == PAYLOAD_NORMAL) return vec4(normal, opacity);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
-        Splat splat = SplatsRef(params.frame.splats).at[begun ? 0u : splat_of(votes.number)];
+        Splat splat = SplatsRef(params.of_volume.splats).at[begun ? 0u : splat_of(votes.number)];
         return vec4(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0, opacity);
     }
-    vec3 color = params.frame.materials[material].rgb;
+    vec3 color = params.of_volume.materials[material].rgb;
     if (LABELS != 0u) {
-        uint label = begun ? label_near(clamp(ivec3(round(params.frame.anchor + params.frame.eye + way * u)), ivec3(0), dims - 1))
+        uint label = begun ? label_near(clamp(ivec3(round(params.of_volume.anchor + params.of_volume.eye + way * u)), ivec3(0), dims - 1))
                            : votes.kind;
         color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];
     }
@@ -66,7 +66,7 @@ vec4 seen_of(SurfaceVotes votes, vec3 u) {
 }
 
 void main() {
-    dims = params.frame.dims;
+    dims = params.of_volume.dims;
     uint item = group_number(), groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
@@ -77,13 +77,13 @@ void main() {
     bool inside = at.x < size.x && at.y < size.y && place < count, marks = (what & 0xfffffu) == 1u, closes = false;
     uint number = uint(pixel.y * size.x + pixel.x);
     vec2 slope = slopes_of(pixel);
-    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    vec3 u = normalize(params.of_volume.ray_z + slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y);
     SurfaceVotes front = load_front(pixel, inside);
     bool some = front.hits > 0.0;
     IF_ANY(some && marks) {
         SurfacePair pair = load_votes(pixel);
         bool open = load_pixel(number).a == 0.0;
-        closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u, votes_before()), params.frame.sheets_drawn), params.frame.solid);
+        closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u, votes_before()), params.frame.sheets_drawn), params.of_volume.solid);
         if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
     }
     if (MIXED == 1u && !marks && inside) {
@@ -100,14 +100,14 @@ void main() {
                 vec4 next = seen_of(front, u);
                 if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
                 if (MIXED == 1u && there) {
-                    bool solid = mean_chord(front) >= params.frame.solid;
+                    bool solid = mean_chord(front) >= params.of_volume.solid;
                     next.a = solid ? 1.0 : next.a;
-                    end = solid ? way_to(front) * dot(params.frame.view_z, u) : end;
+                    end = solid ? way_to(front) * dot(params.of_volume.view_z, u) : end;
                     keep_seen(number, kept++, next.a * vec4(next.rgb, 1.0), way_to(front));
                 }
             }
             // Also surfaces that no later splat decided.
-            shades = shades && k == 0 && !(there && mean_chord(front) >= params.frame.solid);
+            shades = shades && k == 0 && !(there && mean_chord(front) >= params.of_volume.solid);
             IF_ANY(shades) {
                 if (shades) front = load_surface(pixel, 3u);
             }

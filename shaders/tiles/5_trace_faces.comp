@@ -25,7 +25,7 @@ layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
@@ -51,7 +51,7 @@ ivec3 dims;
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/drivers/rounds.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
-#define CLIP_PARAMS params.frame
+#define CLIP_PARAMS params.of_volume
 #include "shaders/common/clip_ray.glsl"
 #include "shaders/tiles/ray_parts.glsl"
 
@@ -90,7 +90,7 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
 
 // The ray's first pieces in the matter that clip planes keep.
 TracedRay trace_kept(vec3 u, Stretch along) {
-    vec3 from = params.frame.anchor + params.frame.eye;
+    vec3 from = params.of_volume.anchor + params.of_volume.eye;
     RayParts parts = ray_parts(u);
     TracedRay ray = trace_ray(from, u, along, Stretch(parts.before.first, parts.before.last));
     bool goes_on = ray.one.x >= TRACE_NOWHERE && along.last > parts.behind.first;
@@ -114,15 +114,15 @@ void main() {
     if (any == 0u) return;
     ivec2 size = params.frame.size, corner = int(TILE) * ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x));
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
-    dims = params.frame.dims;
+    dims = params.of_volume.dims;
     for (uint place = gl_LocalInvocationIndex; place < count; place += gl_WorkGroupSize.x) {
         ivec2 pixel = corner + place_of(tile, place), held = min(pixel, size - 1);
         bool inside = all(lessThan(pixel, size));
         bool open = inside && load_pixel(held.y * size.x + held.x).a < params.frame.saturation;
         IF_ANY(open) {
             vec2 slope = slopes_of(pixel);
-            vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
-            vec3 way = params.frame.ray_z + across;
+            vec3 across = slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y;
+            vec3 way = params.of_volume.ray_z + across;
             float way_length = length(way);
             vec3 u = way / way_length;
             Stretch along = traced_stretch(range, pixel, across, u, way_length);

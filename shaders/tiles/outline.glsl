@@ -16,7 +16,7 @@ uint outline_of(vec3 p, vec3 u, float ahead, float tau) {
     splat.sight = face_sight(p, u);
     if (CREASES == 1u) splat.crease = crease_seen(p, u);
     splat.ahead = ahead;
-    splat.depth_along = dot(params.frame.view_z, u);
+    splat.depth_along = dot(params.of_volume.view_z, u);
     splat.tau = tau;
     uint word = word_of(outline_of_face(splat, CREASES == 1u));
     if (CREASES == 1u) word = min(word, word_of(outline_of_crease(splat)));

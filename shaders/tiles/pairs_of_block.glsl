@@ -4,7 +4,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 128) in;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 layout(push_constant) uniform Push { uint chunk; };
 #include "shaders/drivers/texels.glsl"
 #include "shaders/tiles/tiles_of_splat.glsl"

@@ -26,12 +26,12 @@ bool enters_just_before(RayPart part, float way, vec3 n, vec3 u) {
 bool is_in_part(RayPart part, float way) { return way >= part.first - 1e-3 && way <= part.last; }
 
 RayParts ray_parts(vec3 u) {
-    VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, divisible(u), params.frame.dims);
+    VolumeEnds ends = volume_ends(params.of_volume.anchor + params.of_volume.eye, divisible(u), params.of_volume.dims);
     float first = entry_of(ends);
     RayPart whole = RayPart(max(first, 0.0), exit_of(ends), first > 0.0 ? out_of_entry(ends, u) : vec3(0.0));
     RayParts parts = RayParts(whole, RayPart(1e9, -1e9, vec3(0.0)));
     if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-        Kept kept = kept_pieces(params.frame.eye, u, 0.0);
+        Kept kept = kept_pieces(params.of_volume.eye, u, 0.0);
         parts.before = kept_part(whole, kept.before, kept.before_face);
         if (CLIP_REMOVE > 0u) parts.behind = kept_part(whole, kept.behind, kept.behind_face);
     }

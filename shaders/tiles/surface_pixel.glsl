@@ -9,7 +9,7 @@ uint splat_of(uint number) { return number & NUMBERED_SPLATS; }
 // The label of a splat; 0 where matter begins without one. Votes that this picture did not store may have any number.
 uint kind_of(uint number) {
     bool is_splat = splat_of(number) < params.frame.splat_count;
-    return LABELS != 0u && is_splat ? UintsRef(params.frame.labels).at[splat_of(number)] : 0u;
+    return LABELS != 0u && is_splat ? UintsRef(params.of_volume.labels).at[splat_of(number)] : 0u;
 }
 
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_texel, store_texel)

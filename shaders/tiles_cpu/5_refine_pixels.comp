@@ -11,7 +11,7 @@ layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
 layout(constant_id = SPEC_MIXED) const uint MIXED = 0u;
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 STORED_WORDS(BIND_TILE_PIXELS, pixels, tile_pixels, load_listed, store_listed)
@@ -69,8 +69,8 @@ void keep_surface(ivec2 pixel, vec4 value, float way, bool ends, uint tile) {
     keep_seen(number, 0u, ends ? vec4(max(value.rgb, 0.0) / max(value.a, 0.5), 1.0) : vec4(0.0), ends ? way : NEVER_SEEN);
     keep_seen(number, 1u, vec4(0.0), NEVER_SEEN);
     vec2 slope = slopes_of(pixel);
-    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    float end = max(way * dot(params.frame.view_z, u), 0.0);
+    vec3 u = normalize(params.of_volume.ray_z + slope.x * params.of_volume.ray_x + slope.y * params.of_volume.ray_y);
+    float end = max(way * dot(params.of_volume.view_z, u), 0.0);
     if (ends) atomicMax(UintsRef(params.frame.tile_ends).at[tile], floatBitsToUint(end));
 }
 

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 16) in;  // there are few columns: a larger workgroup would leave processors idle
 #include "shaders/common/groups.glsl"
-layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/frame.glsl"
 #include "shaders/drivers/texels.glsl"
 STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, count_at, set_count)
 layout(push_constant) uniform Push { uint chunk; };

@@ -69,7 +69,8 @@ TEST_P(SlicedSheets, ContainEverySplatThatTouchesThem) {
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         const int base = state.plan().params.sheet_base, count = static_cast<int>(state.plan().params.sheet_count);
         // The device's box of splats contains whole rows: it may begin earlier.
-        EXPECT_LE(base, reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints));
+        EXPECT_LE(base,
+                  reference::sheets_of(records, oracle.field, oracle.view, s.settings, oracle.footprints).first());
 
         // The bounding sphere of an uncut kernel is centred at the voxel. The sphere of a kernel that a face cuts
         // contains the plain kernel, and is bounded by the largest reach. Half extents in sheets: minimum and maximum.

@@ -233,7 +233,7 @@ TEST(SortSheets, GivesTheSameOrderInSegments) {
         EXPECT_GE(state.plan().sort_segments * state.plan().params.sort_segment, per_block);
         FramePlan plan = state.plan();
         plan.sort_segments = per_block;
-        state.targets().frame.mapped<shader::FrameParams>(1)[0].sort_segment = 1;
+        state.targets().frame.mapped<shader::FrameBlock>(1)[0].frame.sort_segment = 1;
         sort_frame(state.commands(), plan, state.targets());
         EXPECT_EQ(state.targets().drawn.mapped<std::uint32_t>(4)[0], entries);
         EXPECT_EQ(download<std::uint32_t>(state, state.targets().order, entries), at_once);
@@ -303,7 +303,7 @@ TEST(PlanChunks, GivesTheSameChunksOnDeviceAndHost) {
     s.settings.sheet_spacing = 0.05;
     DeviceUnderTest& state = prepared(s);
     picture(state, s, s.settings, shader::PAYLOAD_COLOR);
-    auto& p = state.targets().frame.mapped<shader::FrameParams>(1)[0];
+    auto& p = state.targets().frame.mapped<shader::FrameBlock>(1)[0].frame;
     ASSERT_GT(p.sheet_count, 512U) << "more than a workgroup loads together";
     const std::uint32_t places = p.prepared_mask + 1;
     for (const std::uint32_t limit : {1U, 100U, 3000U, 1U << 20U}) {
@@ -380,13 +380,13 @@ TEST(KeptLists, FitIntoEveryBuffer) {
     targets.tile_entries = buffer(1000 * sizeof(glm::uvec2));
     targets.tile_marks = buffer(1000 * sizeof(std::uint32_t));
     targets.traced_entries = buffer(kRoom / shader::MARKED_AT_ONCE * sizeof(std::uint32_t));
-    targets.frame = buffer(sizeof(shader::FrameParams));
+    targets.frame = buffer(sizeof(shader::FrameBlock));
     targets.tile_ranges = buffer(sizeof(glm::uvec2));
     targets.tile_todo = buffer(sizeof(std::uint32_t));
     targets.tile_closed_on_host = buffer(sizeof(std::uint32_t));
     FramePlan plan;
     plan.params.tiles = {1, 1};
-    const auto first = [&] { return targets.frame.mapped<shader::FrameParams>(1)[0].entries_first; };
+    const auto first = [&] { return targets.frame.mapped<shader::FrameBlock>(1)[0].frame.entries_first; };
     const auto list = [&](std::uint32_t length) { targets.tile_ranges.mapped<glm::uvec2>(1)[0] = {0, length}; };
     targets.tile_todo.mapped<std::uint32_t>(1)[0] = 1;
     targets.tile_closed_on_host.mapped<std::uint32_t>(1)[0] = 0;

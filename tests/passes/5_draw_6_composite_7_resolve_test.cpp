@@ -92,7 +92,7 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
 
         const Oracle oracle(s, records, kSheetSize);
         const int reference_base =
-            reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
+            reference::sheets_of(records, oracle.field, oracle.view, s.settings, oracle.footprints).first();
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {

@@ -46,7 +46,7 @@ struct DeviceUnderTest {
         for (const FrameRequest& part : parts) {
             const LevelStore& of_part = level_of(part.number);
             const CollectedSplats list = part.mixed && !part.whole ? of_part.opaque() : of_part.all();
-            planned.push_back({list, drawer.plan(list, part.scene, camera, settings, size, payload)});
+            planned.push_back({list, drawer.plan(list, part.scene, camera, drawn_settings(part), size, payload)});
             if (offset != glm::dvec2(0)) shift_rays(planned.back().plan, offset);
         }
         if (planned.size() == 1) return drawer.draw(planned.front().list, std::move(planned.front().plan));

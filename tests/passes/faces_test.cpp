@@ -272,7 +272,7 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
     const Oracle oracle(s, records, kFacesSize);
     const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
     const double thickness = reference::sheet_thickness(oracle.view, s.settings);
-    const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
+    const int base = reference::sheets_of(records, oracle.field, oracle.view, s.settings, oracle.footprints).first();
     const bool sliced = s.settings.sheets == SheetCut::Sliced;
     double peak = 0;
     std::size_t compared = 0, differ = 0;

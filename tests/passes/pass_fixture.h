@@ -263,7 +263,8 @@ struct Oracle {
           view(s.camera, s.volume.geometry, size.x, size.y),
           footprints(s.settings, table_depth(s.scene, s.volume.geometry),
                      has_single_piece(s.settings, s.scene, s.volume.geometry) ? FacePieces::Longer : FacePieces::Both),
-          selected(reference::select_footprints(records, field, view, s.settings, footprints)),
+          selected(reference::select_footprints(records, field, view, s.settings, footprints,
+                                                reference::sheets_of(records, field, view, s.settings, footprints))),
           drawer(records, selected, field, s.scene, view, s.settings, footprints) {}
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;

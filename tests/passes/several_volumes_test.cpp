@@ -4,67 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numeric>
 
 #include "engine/reference/reference_renderer.h"
 #include "engine/renderer.h"
-#include "tests/passes/pass_fixture.h"
+#include "tests/passes/volumes_beside.h"
 
 namespace edgesplat::test {
 namespace {
-
-constexpr glm::ivec2 kBesideSize{72, 60};
-
-/// Depth below a ball's surface, mm, on a grid that holds it.
-std::shared_ptr<const Volume> ball(const glm::dvec3& middle, double radius, const glm::dmat3& axes) {
-    auto volume = std::make_shared<Volume>();
-    volume->name = "ball";
-    VolumeGeometry& geometry = volume->geometry;
-    geometry.index_to_world_axes = axes;
-    const double spacing = std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
-    geometry.dims = glm::ivec3(static_cast<int>(2 * radius / spacing) + 9);
-    geometry.origin = middle - axes * (glm::dvec3(geometry.dims - 1) * 0.5 + glm::dvec3(0.2, -0.1, 0.3));
-    for (int z = 0; z < geometry.dims.z; ++z)
-        for (int y = 0; y < geometry.dims.y; ++y)
-            for (int x = 0; x < geometry.dims.x; ++x) {
-                const glm::dvec3 at = geometry.to_world(glm::dvec3(x, y, z));
-                volume->values.push_back(static_cast<float>(radius - glm::length(at - middle)));
-            }
-    finish_volume(*volume);
-    return volume;
-}
-
-const glm::dmat3 kStraight(1.0);
-/// Turned, left-handed, with other spacings.
-const glm::dmat3 kOblique(glm::dvec3(0.66, 0.41, 0.1), glm::dvec3(0.5, -0.75, 0.15), glm::dvec3(-0.1, 0.12, 0.93));
-
-constexpr Material solid(const glm::dvec3& color) {
-    return {.color = color, .extinction = 9};
-}
-
-AddedVolume added(std::shared_ptr<const Volume> volume, std::vector<double> iso_values, std::vector<Material> above) {
-    AddedVolume out{.volume = std::move(volume),
-                    .iso_values = std::move(iso_values),
-                    .materials = {{}},
-                    .transfer = {},
-                    .label_colors = {}};
-    out.materials.insert(out.materials.end(), above.begin(), above.end());
-    return out;
-}
-
-/// An opaque ball, and one on another grid that reaches into it.
-PassScene two_balls() {
-    PassScene s;
-    s.name = "two balls";
-    s.volume = *ball({0, 0, 0}, 8, kStraight);
-    s.scene.iso_values = {0};
-    s.scene.materials = {{}, solid({1, 0.8, 0.5})};
-    s.scene.lights = {directional_light({0.4, -0.5, 0.6})};
-    s.scene.added = {added(ball({7, -3, 2}, 6, kOblique), {0}, {solid({0.4, 0.6, 1})})};
-    s.settings.pixels = PixelChoice::Every;
-    s.camera = {.eye = {9, -50, 22}, .direction = {-6, 49, -21}, .up = {0.1, 0.05, 1}, .fov_y = 32};
-    return s;
-}
 
 std::vector<PassScene> scenes() {
     std::vector<PassScene> all{two_balls()};
@@ -76,10 +22,10 @@ std::vector<PassScene> scenes() {
     add("core in a shell", [](PassScene& s) {
         // Translucent matter of one volume around opaque matter of another.
         s.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
-        s.scene.added = {added(ball({1, -1, 0.5}, 5, kOblique), {0}, {solid({1, 0.8, 0.5})})};
+        s.scene.added = {added_volume(ball_on_grid({1, -1, 0.5}, 5, kOblique), {0}, {solid_matter({1, 0.8, 0.5})})};
     });
     add("shell around a core", [](PassScene& s) {
-        s.scene.added = {added(ball({1, -1, 0.5}, 11, kOblique), {0}, {{{0.3, 0.5, 1}, 0.1}})};
+        s.scene.added = {added_volume(ball_on_grid({1, -1, 0.5}, 11, kOblique), {0}, {{{0.3, 0.5, 1}, 0.1}})};
     });
     add("transfer function", [](PassScene& s) {
         s.scene.iso_values = {1};
@@ -88,7 +34,7 @@ std::vector<PassScene> scenes() {
     });
     add("mixture and ball", [](PassScene& s) {
         s.scene.iso_values = {0, 4};
-        s.scene.materials = {{}, {{0.3, 0.5, 1}, 0.12}, solid({1, 0.8, 0.5})};
+        s.scene.materials = {{}, {{0.3, 0.5, 1}, 0.12}, solid_matter({1, 0.8, 0.5})};
     });
     add("thin layers", [](PassScene& s) {
         s.scene.iso_values = {0, 0.9};
@@ -101,8 +47,9 @@ std::vector<PassScene> scenes() {
         s.scene.added[0].clipped = false;
     });
     add("three", [](PassScene& s) {
-        s.scene.added.push_back(added(ball({-6, -4, -3}, 5, 0.8 * kOblique), {0}, {solid({0.5, 1, 0.5})}));
-        s.scene.added.push_back(added(ball({0, 0, 0}, 12, kStraight), {0}, {{{1, 0.5, 0.5}, 0.05}}));
+        s.scene.added.push_back(
+            added_volume(ball_on_grid({-6, -4, -3}, 5, 0.8 * kOblique), {0}, {solid_matter({0.5, 1, 0.5})}));
+        s.scene.added.push_back(added_volume(ball_on_grid({0, 0, 0}, 12, kStraight), {0}, {{{1, 0.5, 0.5}, 0.05}}));
     });
     add("eye between", [](PassScene& s) {
         s.camera = {.eye = {1, -13, 3}, .direction = {2, 10, -2}, .up = {0, 0, 1}, .fov_y = 90};
@@ -120,7 +67,7 @@ std::vector<PassScene> scenes() {
         // Kernels, cut by a plane that does not cut the other volume, attenuate its light and it theirs.
         s.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
         s.scene.effects.clip.keep = {{{2, -2, 0}, {0.2, -1, 0.3}}};
-        s.scene.added = {added(ball({3, -1, 0.5}, 5, kOblique), {0}, {solid({1, 0.8, 0.5})})};
+        s.scene.added = {added_volume(ball_on_grid({3, -1, 0.5}, 5, kOblique), {0}, {solid_matter({1, 0.8, 0.5})})};
         s.scene.added[0].clipped = false;
         s.scene.lights[0].shadows = true;
         s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
@@ -134,35 +81,13 @@ std::vector<PassScene> scenes() {
     return all;
 }
 
-std::vector<glm::vec4> drawn(const PassScene& s, std::uint32_t payload = shader::PAYLOAD_COLOR) {
-    DeviceUnderTest& state = prepared(s);
-    state.draw(s.scene, s.camera, s.settings, kBesideSize, payload);
-    const auto pixels =
-        state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kBesideSize.x * kBesideSize.y));
-    return {pixels.begin(), pixels.end()};
-}
-
-/// PSNR without the worst pixel of 200: where a ray only touches a surface, rounding decides.
-double decibels_of_most(std::span<const glm::vec4> got, std::span<const float> want, int channels, double scale) {
-    std::vector<double> squares(got.size(), 0);
-    for (std::size_t i = 0; i < got.size(); ++i)
-        for (int c = 0; c < channels; ++c) {
-            const auto at = i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c);
-            squares[i] += std::pow(static_cast<double>(got[i][c] - want[at]) / scale, 2);
-        }
-    std::ranges::sort(squares);
-    squares.resize(squares.size() - squares.size() / 200);
-    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-    return -10 * std::log10(sum / (channels * static_cast<double>(squares.size())) + 1e-20);
-}
-
 TEST(SeveralVolumes, LookLikeTheReferences) {
     for (const PassScene& s : scenes()) {
         SCOPED_TRACE(s.name);
-        const auto got = drawn(s);
+        const auto got = drawn_beside(s);
         const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
         const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y);
-        const double psnr = decibels_of_most(got, want.pixels, 4, 1);
+        const double psnr = decibels_beside(got, want.pixels, 4, 1);
         std::printf("%-20s %.1f dB\n", s.name.c_str(), psnr);
         EXPECT_GE(psnr, 55);
     }
@@ -174,9 +99,9 @@ TEST(SeveralVolumes, HaveTheReferencesOutputs) {
     for (const auto& [payload, output, channels, scale] :
          {std::tuple{shader::PAYLOAD_NORMAL, reference::Output::Normal, 3, 1.0},
           {shader::PAYLOAD_DEPTH_DISTANCE, reference::Output::Depth, 1, 50.0}}) {
-        const auto got = drawn(s, payload);
+        const auto got = drawn_beside(s, payload);
         const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y, output);
-        EXPECT_GE(decibels_of_most(got, want.pixels, channels, scale), 45) << payload;
+        EXPECT_GE(decibels_beside(got, want.pixels, channels, scale), 45) << payload;
     }
 }
 
@@ -184,7 +109,7 @@ TEST(SeveralVolumes, HaveTheReferencesOutputs) {
 TEST(SeveralVolumes, AreExactForUnlitBalls) {
     PassScene s = two_balls();
     s.scene.lights.clear();
-    const auto got = drawn(s);
+    const auto got = drawn_beside(s);
     const reference::View view(s.camera, s.volume.geometry, kBesideSize.x, kBesideSize.y);
     int wrong = 0, met = 0;
     for (int y = 0; y < kBesideSize.y; ++y)
@@ -214,29 +139,13 @@ TEST(SeveralVolumes, AreExactForUnlitBalls) {
     EXPECT_LE(wrong, 12);
 }
 
-/// A scene's volume that is moved without changing its order in the list.
-Scene exchanged(const PassScene& s, Volume& first) {
-    Scene scene = s.scene;
-    const AddedVolume was = scene.added[0];
-    scene.added[0] = {.volume = std::make_shared<const Volume>(s.volume),
-                      .iso_values = s.scene.iso_values,
-                      .materials = s.scene.materials,
-                      .transfer = s.scene.transfer,
-                      .label_colors = s.scene.label_colors};
-    scene.iso_values = was.iso_values;
-    scene.materials = was.materials;
-    scene.transfer = was.transfer;
-    first = *was.volume;
-    return scene;
-}
-
 TEST(SeveralVolumes, DoNotDependOnTheirOrder) {
     for (const PassScene& s : scenes()) {
         if (s.scene.added.size() != 1 || !s.scene.added[0].clipped) continue;
         SCOPED_TRACE(s.name);
         PassScene other = s;
         other.scene = exchanged(s, other.volume);
-        EXPECT_TRUE(drawn(s) == drawn(other));
+        EXPECT_TRUE(drawn_beside(s) == drawn_beside(other));
     }
 }
 
@@ -245,19 +154,19 @@ TEST(SeveralVolumes, OfOneObjectShowThatObject) {
     PassScene alone = two_balls();
     alone.scene.added.clear();
     PassScene twice = two_balls();
-    twice.scene.added = {added(ball({0, 0, 0}, 8, kOblique), {0}, {twice.scene.materials[1]})};
-    const auto one = drawn(alone), two = drawn(twice);
+    twice.scene.added = {added_volume(ball_on_grid({0, 0, 0}, 8, kOblique), {0}, {twice.scene.materials[1]})};
+    const auto one = drawn_beside(alone), two = drawn_beside(twice);
     std::vector<float> want;
     for (const glm::vec4& pixel : one)
         want.insert(want.end(), &pixel.x, &pixel.x + 4);
-    EXPECT_GE(decibels_of_most(two, want, 4, 1), 50);
+    EXPECT_GE(decibels_beside(two, want, 4, 1), 50);
 }
 
 /// Light that both take is as if one volume had the matter of both.
 TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
     constexpr glm::dvec3 kBallMiddle(0, 4, 13);
     PassScene two = two_balls();
-    two.scene.added[0] = added(ball(kBallMiddle, 4, kOblique), {0}, {two.scene.materials[1]});
+    two.scene.added[0] = added_volume(ball_on_grid(kBallMiddle, 4, kOblique), {0}, {two.scene.materials[1]});
     two.camera = {.eye = {9, -40, 45}, .direction = {-9, 41, -40}, .up = {0, 0, 1}, .fov_y = 30};
     PassScene one = two;
     one.scene.added.clear();
@@ -279,11 +188,11 @@ TEST(SeveralVolumes, ShadeEachOtherAsOneVolumeWould) {
             change(s->scene);
         alone.scene.lights[0].shadows = false;
         alone.scene.effects.occlusion.reset();
-        const auto together = drawn(a), whole = drawn(b), unshaded = drawn(alone);
+        const auto together = drawn_beside(a), whole = drawn_beside(b), unshaded = drawn_beside(alone);
         std::vector<float> want;
         for (const glm::vec4& pixel : whole)
             want.insert(want.end(), &pixel.x, &pixel.x + 4);
-        const double psnr = decibels_of_most(together, want, 4, 1), without = decibels_of_most(unshaded, want, 4, 1);
+        const double psnr = decibels_beside(together, want, 4, 1), without = decibels_beside(unshaded, want, 4, 1);
         std::printf("%-10s %.1f dB, with light from everywhere %.1f dB\n", name, psnr, without);
         EXPECT_GE(psnr, least);
         EXPECT_GE(psnr, without + 8);
@@ -304,19 +213,19 @@ TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
     PassScene fine;
     fine.volume = sample(torus_scene({56, 52, 40}, {27.3, 25.6, 19.4}, 15.2, 7.6));
     fine.scene.iso_values = {0.5};
-    fine.scene.materials = {{}, solid({1, 0.8, 0.5})};
+    fine.scene.materials = {{}, solid_matter({1, 0.8, 0.5})};
     fine.settings.pixels = PixelChoice::Every;
     fine.camera = {.eye = {30, -50, 62}, .direction = {-3, 75, -43}, .up = {0, 0, 1}, .fov_y = 34};
     PassScene both = fine;
     both.volume = halved(fine.volume);
     constexpr int kLast = 36;
-    both.scene.added = {added(std::make_shared<const Volume>(cropped(fine.volume, {0, 0, 0}, {kLast, 51, 39})), {0.5},
-                              {fine.scene.materials[1]})};
+    both.scene.added = {added_volume(std::make_shared<const Volume>(cropped(fine.volume, {0, 0, 0}, {kLast, 51, 39})),
+                                     {0.5}, {fine.scene.materials[1]})};
     both.scene.added[0].replaces = true;
     PassScene coarse = both;
     coarse.scene.added.clear();
-    const auto want = drawn(fine), depths = drawn(fine, shader::PAYLOAD_DEPTH_DISTANCE), got = drawn(both),
-               whole_coarse = drawn(coarse);
+    const auto want = drawn_beside(fine), depths = drawn_beside(fine, shader::PAYLOAD_DEPTH_DISTANCE),
+               got = drawn_beside(both), whole_coarse = drawn_beside(coarse);
     const reference::View view(fine.camera, fine.volume.geometry, kBesideSize.x, kBesideSize.y);
     struct Part {
         int pixels = 0, off = 0;  // by more than a hundredth of full scale
@@ -369,19 +278,19 @@ TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
             for (Material& material : beside.materials)
                 material.extinction = 0;
         alone.scene.clipped = s.scene.clipped = true;
-        EXPECT_TRUE(drawn(s) == drawn(alone));
+        EXPECT_TRUE(drawn_beside(s) == drawn_beside(alone));
     }
 }
 
 /// Whatever lies beside a volume, the picture is finite, and opacities are shares.
 TEST(SeveralVolumes, GiveFiniteNumbers) {
     const auto far = [](double by) {
-        auto moved = std::make_shared<Volume>(*ball({0, 0, 0}, 6, kOblique));
+        auto moved = std::make_shared<Volume>(*ball_on_grid({0, 0, 0}, 6, kOblique));
         moved->geometry.origin.x += by;
         return moved;
     };
     const auto with_holes = [] {
-        auto holed = std::make_shared<Volume>(*ball({7, -3, 2}, 6, kOblique));
+        auto holed = std::make_shared<Volume>(*ball_on_grid({7, -3, 2}, 6, kOblique));
         for (std::size_t i = 0; i < holed->values.size(); i += 7)
             holed->values[i] =
                 i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
@@ -406,17 +315,17 @@ TEST(SeveralVolumes, GiveFiniteNumbers) {
     };
     std::vector<std::pair<const char*, AddedVolume>> beside;
     const auto add = [&](const char* name, std::shared_ptr<const Volume> volume, double iso) {
-        beside.emplace_back(name, added(std::move(volume), {iso}, {solid({0.4, 0.6, 1})}));
+        beside.emplace_back(name, added_volume(std::move(volume), {iso}, {solid_matter({0.4, 0.6, 1})}));
     };
     add("far away", far(1e6), 0);
     add("behind the eye", far(-300), 0);
     add("samples without data", with_holes(), 0);
     add("a slice", slice(), 0.5);
     add("one value", constant(), 2);
-    add("around everything", ball({0, 0, 0}, 90, 6.0 * kOblique), 0);
-    add("tiny", ball({0, -9, 0}, 0.02, 0.004 * kOblique), 0);
+    add("around everything", ball_on_grid({0, 0, 0}, 90, 6.0 * kOblique), 0);
+    add("tiny", ball_on_grid({0, -9, 0}, 0.02, 0.004 * kOblique), 0);
     add("the same", std::make_shared<const Volume>(two_balls().volume), 0);
-    add("mirrored", ball({0, 0, 0}, 8, glm::dmat3(-1)), 0);
+    add("mirrored", ball_on_grid({0, 0, 0}, 8, glm::dmat3(-1)), 0);
     for (const auto& [name, volume] : beside)
         for (const bool inside : {false, true}) {
             SCOPED_TRACE(name);
@@ -426,7 +335,7 @@ TEST(SeveralVolumes, GiveFiniteNumbers) {
             s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 5};
             if (inside) s.camera.eye = {0.3, 0.2, 0.1};
             for (const std::uint32_t payload : {shader::PAYLOAD_COLOR, shader::PAYLOAD_DEPTH_DISTANCE})
-                for (const glm::vec4& pixel : drawn(s, payload)) {
+                for (const glm::vec4& pixel : drawn_beside(s, payload)) {
                     ASSERT_TRUE(std::isfinite(glm::dot(pixel, pixel)));
                     ASSERT_TRUE(pixel.a >= 0 && pixel.a <= 1.00001F) << pixel.a;
                 }
@@ -449,15 +358,21 @@ TEST(SeveralVolumes, RefuseWhatTheyCannotShow) {
     };
     using testing::HasSubstr;
     EXPECT_EQ(refusal([](PassScene&) {}), "");
-    EXPECT_THAT(
-        refusal([](PassScene& s) { s.scene.materials[1].extinction = s.scene.added[0].materials[1].extinction = 0.1; }),
-        HasSubstr("expected at most one such volume"));
+    const auto many_clouds = [](std::size_t beside) {
+        return [beside](PassScene& s) {
+            s.scene.added.resize(beside, s.scene.added[0]);  // one volume many times
+            for (AddedVolume& volume : s.scene.added)
+                volume.materials[1].extinction = 0.01;
+        };
+    };
+    EXPECT_EQ(refusal(many_clouds(shader::MAX_TOGETHER)), "");
+    EXPECT_THAT(refusal(many_clouds(shader::MAX_TOGETHER + 1)),
+                HasSubstr("9 volumes have translucent matter, expected at most 8"));
     EXPECT_THAT(refusal([](PassScene& s) {
-                    s.scene.added.push_back(s.scene.added[0]);  // one volume twice
-                    for (AddedVolume& beside : s.scene.added)
-                        beside.materials[1].extinction = 0.1;
+                    s.scene.materials[1].extinction = 0.1;
+                    s.settings.sheet_format = SheetFormat::Layers;
                 }),
-                HasSubstr("expected at most one such volume"));
+                HasSubstr("expected sheet_format = tiles"));
     EXPECT_THAT(refusal([](PassScene& s) { s.settings.opaque = OpaqueMatter::Kernels; }),
                 HasSubstr("opaque = surfaces"));
     EXPECT_THAT(refusal([](PassScene&) {}, {.tau = true}), HasSubstr("tau"));
@@ -494,7 +409,7 @@ TEST(SeveralVolumes, AreCollectedOnce) {
     scene.added[0].materials[1].color = {1, 0, 0};
     scene.effects.clip.keep = {{{2, -4, 0}, {0.2, -1, 0.3}}};
     EXPECT_EQ(voxels(scene), 0U);
-    const AddedVolume third = added(ball({-6, -4, -3}, 5, kOblique), {0}, {solid({0.5, 1, 0.5})});
+    const AddedVolume third = added_volume(ball_on_grid({-6, -4, -3}, 5, kOblique), {0}, {solid_matter({0.5, 1, 0.5})});
     scene.added.insert(scene.added.begin(), third);
     const std::uint64_t of_third = voxels(scene);
     EXPECT_GT(of_third, 0U);

@@ -174,7 +174,8 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
         ASSERT_EQ(state.plan().params.group_count, 1U);
 
         const Oracle oracle(s, records, kShadingSize);
-        const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
+        const int base =
+            reference::sheets_of(records, oracle.field, oracle.view, s.settings, oracle.footprints).first();
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {

@@ -68,7 +68,8 @@ std::set<std::uint32_t> values_of(const FrameCost& frame, std::uint32_t id) {
     return values;
 }
 
-/// Members of FrameParams and SceneParams that the frame's shaders read, and their numbers of instructions.
+/// Members of FrameParams, VolumeParams and SceneParams that the frame's shaders read, and their numbers of
+/// instructions.
 struct Code {
     std::set<std::string> members;
     std::map<std::string, std::size_t> instructions;
@@ -175,8 +176,10 @@ TEST_P(ZeroCost, HasNoShaderInstructionWhenOff) {
         }
     };
     check(effect().frame_fields, "FrameParams");
+    check(effect().volume_fields, "VolumeParams");
     check(effect().scene_fields, "SceneParams");
-    if (!effect().frame_fields.empty() || !effect().scene_fields.empty()) {
+    const bool reads = !effect().frame_fields.empty() || !effect().volume_fields.empty();
+    if (reads || !effect().scene_fields.empty()) {
         std::size_t off_total = 0, on_total = 0;
         for (const auto& [shader, count] : off_code.instructions)
             off_total += count;
@@ -201,6 +204,8 @@ TEST(PlainFrame, ReadsNoMemberOwnedByAnEffect) {
     for (const Effect& effect : effect_table()) {
         for (const std::string_view field : effect.frame_fields)
             EXPECT_FALSE(code.members.contains("FrameParams." + std::string(field))) << effect.name << ": " << field;
+        for (const std::string_view field : effect.volume_fields)
+            EXPECT_FALSE(code.members.contains("VolumeParams." + std::string(field))) << effect.name << ": " << field;
         for (const std::string_view field : effect.scene_fields)
             EXPECT_FALSE(code.members.contains("SceneParams." + std::string(field))) << effect.name << ": " << field;
     }
@@ -209,7 +214,7 @@ TEST(PlainFrame, ReadsNoMemberOwnedByAnEffect) {
 TEST(PlainFrame, ChecksCanFail) {
     const Code code = code_of(draw(request_for_rows()));
     EXPECT_TRUE(code.members.contains("FrameParams.background"));
-    EXPECT_TRUE(code.members.contains("FrameParams.splats"));
+    EXPECT_TRUE(code.members.contains("VolumeParams.splats"));
     EXPECT_TRUE(code.members.contains("SceneParams.core_size"));
 }
 

@@ -11,22 +11,23 @@ namespace {
 struct WideBox {
     glm::dvec3 middle, half;
     WideBox(const FramePlan& plan, const VoxelBox& box)
-        : middle(0.5 * glm::dvec3(box.low + box.high) - glm::dvec3(plan.params.anchor)),
+        : middle(0.5 * glm::dvec3(box.low + box.high) - glm::dvec3(plan.volume.anchor)),
           half(0.5 * glm::dvec3(box.high - box.low) + plan.reach) {}
 };
 
 /// Tiles x0, y0, x1, y1, half open, that a box may show in; nullopt if it reaches the eye's plane.
 std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
     const auto& p = plan.params;
+    const auto& v = plan.volume;
     const glm::dvec2 size(p.size), tan_half(p.tan_half_x, p.tan_half_y);
     glm::dvec2 low(size), high(0);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::bvec3 far((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
         const glm::dvec3 at = box.middle + glm::mix(-box.half, box.half, far);
-        const double depth = glm::dot(glm::dvec3(p.view_z), at) + static_cast<double>(p.anchor_z);
+        const double depth = glm::dot(glm::dvec3(v.view_z), at) + static_cast<double>(v.anchor_z);
         if (!(depth > 0)) return std::nullopt;
-        const glm::dvec2 view(glm::dot(glm::dvec3(p.view_x), at) + static_cast<double>(p.anchor_x),
-                              glm::dot(glm::dvec3(p.view_y), at) + static_cast<double>(p.anchor_y));
+        const glm::dvec2 view(glm::dot(glm::dvec3(v.view_x), at) + static_cast<double>(v.anchor_x),
+                              glm::dot(glm::dvec3(v.view_y), at) + static_cast<double>(v.anchor_y));
         const glm::dvec2 pixel = (view / depth / tan_half * 0.5 + 0.5) * size;
         low = glm::min(low, pixel - 1.0);
         high = glm::max(high, pixel + 1.0);
@@ -41,8 +42,8 @@ std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
 
 glm::dvec2 depths_of(const FramePlan& plan, const VoxelBox& voxels) {
     const WideBox box(plan, voxels);
-    const glm::dvec3 z(plan.params.view_z);
-    const double middle = glm::dot(z, box.middle) + static_cast<double>(plan.params.anchor_z);
+    const glm::dvec3 z(plan.volume.view_z);
+    const double middle = glm::dot(z, box.middle) + static_cast<double>(plan.volume.anchor_z);
     const double half = glm::dot(glm::abs(z), box.half);
     return {middle - half, middle + half};
 }

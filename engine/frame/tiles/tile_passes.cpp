@@ -88,7 +88,7 @@ void TilePasses::sort(std::uint32_t chunk) {
     const std::uint64_t in_column = how_.profile->side_by_side ? 0 : most_pairs(chunk, plan_.params.tile_blocks);
     const auto steps = static_cast<std::uint32_t>((in_column + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
     if (how_.refined) {
-        const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
+        const std::uint64_t first = targets_.frame.mapped<shader::FrameBlock>(1)[0].frame.entries_first;
         const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
         commands_.fill(targets_.tile_marks, ~0U, first * sizeof(std::uint32_t), room * sizeof(std::uint32_t));
     }

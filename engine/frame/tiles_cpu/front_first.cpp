@@ -23,10 +23,10 @@ glm::ivec2 sheets_of(const FramePlan& plan, const glm::dvec2& depths) {
 /// Estimated number of tiles that a splat at this depth (mm) touches.
 double tiles_of_splat(const FramePlan& plan, double depth) {
     const auto& p = plan.params;
-    const glm::dmat3 to_world(p.index_to_world);
+    const glm::dmat3 to_world(plan.volume.index_to_world);
     const double voxel = std::max({glm::length(to_world[0]), glm::length(to_world[1]), glm::length(to_world[2])});
-    const double pixels =
-        static_cast<double>(p.support) * voxel / std::max(depth, 1e-6) * p.size.y / static_cast<double>(p.tan_half_y);
+    const double pixels = static_cast<double>(plan.volume.support) * voxel / std::max(depth, 1e-6) * p.size.y /
+                          static_cast<double>(p.tan_half_y);
     const double across = 1 + pixels / shader::TILE;
     return across * across;
 }

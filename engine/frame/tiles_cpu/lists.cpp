@@ -131,7 +131,7 @@ bool KeptLists::is_closed(std::size_t tile) const {
 }
 
 void KeptLists::point_to(std::uint64_t pair) const {
-    targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first = static_cast<std::uint32_t>(pair);
+    targets_.frame.mapped<shader::FrameBlock>(1)[0].frame.entries_first = static_cast<std::uint32_t>(pair);
 }
 
 }  // namespace edgesplat
