@@ -80,6 +80,10 @@ void volumes_panel(AppState& state) {
         switches(
             state, entry.volume, [i](SceneDocument & d) -> auto& { return d.volumes[i].volume; });
         ImGui::SameLine();
+        flag(state, "inside", entry.volume.rule == edgesplat::VolumeRule::Inside, [i](SceneDocument& d, bool on) {
+            d.volumes[i].volume.rule = on ? edgesplat::VolumeRule::Inside : edgesplat::VolumeRule::Add;
+        });
+        ImGui::SameLine();
         if (button(state, "remove")) {
             session.edit(
                 [i](SceneDocument& d) { d.volumes.erase(d.volumes.begin() + static_cast<std::ptrdiff_t>(i)); });

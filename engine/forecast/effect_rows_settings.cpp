@@ -47,6 +47,29 @@ void draw_opaque_surfaces(FrameRequest& request) {
     if (draws_faces(request.settings)) request.settings.edges = EdgeEstimator::Cubic;
 }
 
+void make_second_translucent(FrameRequest& request) {
+    draw_opaque_surfaces(request);
+    request.scene.materials[request.scene.materials.size() - 2] = {{0.3, 0.5, 1}, 0.1};
+}
+
+/// The highest values are opaque matter, those below translucent.
+void show_mixture(FrameRequest& request) {
+    show_opaque_matter(request);
+    draw_opaque_surfaces(request);
+    make_second_translucent(request);
+}
+
+/// Adds the volume again, at another place.
+void add_moved_volume(FrameRequest& request, std::vector<double> iso_values, std::vector<Material> materials) {
+    auto moved = std::make_shared<Volume>(*request.volume);
+    moved->geometry.origin += 0.3 * moved->geometry.index_to_world_axes * glm::dvec3(moved->geometry.dims);
+    request.scene.added.push_back({.volume = std::move(moved),
+                                   .iso_values = std::move(iso_values),
+                                   .materials = std::move(materials),
+                                   .transfer = {},
+                                   .label_colors = request.scene.label_colors});
+}
+
 /// Number of the parts that kernels draw.
 std::size_t kernels_of(std::span<const FrameRequest> parts) {
     const auto are_kernels = [](const FrameRequest& part) { return !planned_collection(part).surfaces; };
@@ -132,11 +155,7 @@ std::vector<Effect> settings_effects() {
          .reason = [](const FrameRequest& r) -> std::string {
              return is_mixed(r) ? "some matter is translucent, some opaque" : "";
          },
-         .turn_on =
-             [](FrameRequest& r) {
-                 draw_opaque_surfaces(r);
-                 r.scene.materials[r.scene.materials.size() - 2] = {{0.3, 0.5, 1}, 0.1};
-             },
+         .turn_on = [](FrameRequest& r) { make_second_translucent(r); },
          .base =
              [](FrameRequest& r) {
                  show_opaque_matter(r);
@@ -162,13 +181,7 @@ std::vector<Effect> settings_effects() {
          .turn_on =
              [](FrameRequest& r) {
                  draw_opaque_surfaces(r);
-                 auto moved = std::make_shared<Volume>(*r.volume);
-                 moved->geometry.origin += 0.3 * moved->geometry.index_to_world_axes * glm::dvec3(moved->geometry.dims);
-                 r.scene.added.push_back({.volume = std::move(moved),
-                                          .iso_values = {r.scene.iso_values.back()},
-                                          .materials = {{}, r.scene.materials.back()},
-                                          .transfer = {},
-                                          .label_colors = r.scene.label_colors});
+                 add_moved_volume(r, {r.scene.iso_values.back()}, {{}, r.scene.materials.back()});
              },
          .base =
              [](FrameRequest& r) {
@@ -192,14 +205,7 @@ std::vector<Effect> settings_effects() {
                     },
                     .turn_on =
                         [](FrameRequest& r) {
-                            auto moved = std::make_shared<Volume>(*r.volume);
-                            moved->geometry.origin +=
-                                0.3 * moved->geometry.index_to_world_axes * glm::dvec3(moved->geometry.dims);
-                            r.scene.added.push_back({.volume = std::move(moved),
-                                                     .iso_values = {r.scene.iso_values.back()},
-                                                     .materials = {{}, r.scene.materials.back()},
-                                                     .transfer = {},
-                                                     .label_colors = {}});
+                            add_moved_volume(r, {r.scene.iso_values.back()}, {{}, r.scene.materials.back()});
                         },
                     .base = show_translucent_matter,
                     .resized = {"B-spline coefficients", "batches of splats", "chunks of sheets", "edge field",
@@ -209,6 +215,27 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_TOGETHER, "SPEC_TOGETHER"}},
                     .frame_fields = {"volume_count"},
                     .volume_fields = {"first_splat"}});
+    rows.push_back(
+        {.name = "volume inside",
+         .help = "a finer volume replaces the others within its grid; along a rim their kernels give way to its own",
+         .call = "scene.added[].replaces; volume.rule = \"inside\"",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const auto replaces = [](const AddedVolume& added) { return added.replaces; };
+             return std::ranges::any_of(r.scene.added, replaces) ? "one volume replaces the others" : "";
+         },
+         .turn_on =
+             [](FrameRequest& r) {
+                 if (r.scene.added.empty()) add_moved_volume(r, r.scene.iso_values, r.scene.materials);
+                 r.scene.added.back().replaces = true;
+             },
+         .base =
+             [](FrameRequest& r) {
+                 show_mixture(r);
+                 add_moved_volume(r, r.scene.iso_values, r.scene.materials);
+             },
+         .passes = {"5_begin_surfaces"},
+         .constants = {{shader::SPEC_RIM, "SPEC_RIM"}, {shader::SPEC_INNER, "SPEC_INNER"}},
+         .volume_fields = {"rim", "rim_within"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",

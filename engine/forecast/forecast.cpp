@@ -172,7 +172,10 @@ Settings drawn_settings(const FrameRequest& request) {
 
 FrameRequest request_of_volume(const FrameRequest& request, std::size_t number) {
     FrameRequest one = request;
-    one.scene = scene_of_volume(request.scene, number);
+    if (!request.scene.added.empty())
+        one.scene = scene_of_volume(request.scene, number, request.volume->geometry);
+    else
+        one.scene = scene_of_volume(request.scene, number);
     if (number > 0) one.volume = request.scene.added[number - 1].volume;
     one.number = number;
     return one;
@@ -181,10 +184,15 @@ FrameRequest request_of_volume(const FrameRequest& request, std::size_t number) 
 std::vector<FrameRequest> parts_of_volume(const FrameRequest& request) {
     // Optical depth needs all voxels.
     auto mixture = request.outputs.tau ? std::nullopt : mixture_of(request.settings, request.scene, *request.volume);
-    if (!mixture) return {request};
+    if (!mixture) {
+        FrameRequest one = request;
+        const bool surfaces = draws_surfaces(drawn_settings(request), request.scene, *request.volume);
+        one.scene = surfaces ? scene_of_surfaces(request.scene) : scene_of_kernels(request.scene);
+        return {one};
+    }
     std::vector<FrameRequest> parts(2, request);
-    parts[0].scene = std::move(mixture->surfaces);
-    parts[1].scene = std::move(mixture->kernels);
+    parts[0].scene = scene_of_surfaces(std::move(mixture->surfaces));
+    parts[1].scene = scene_of_kernels(std::move(mixture->kernels));
     parts[1].whole = request.scene;
     parts[0].mixed = parts[1].mixed = true;
     return parts;

@@ -25,6 +25,8 @@ struct DrawVariant {
     bool surfaces = false;            ///< surface splats, drawn by 5_draw_surfaces
     bool mixed = false;               ///< surface splats draw opaque matter, kernels translucent matter in front of it
     bool several = false;             ///< with `mixed`: the surfaces are those of several volumes
+    bool rim = false;                 ///< along a rim, kernels of one volume give way to those of another
+    bool inner = false;               ///< surfaces of one volume continue those of another
     bool together = false;            ///< kernels of several volumes are drawn as one list
     std::uint32_t iso_count = 1;      ///< number of iso-values; only with surface splats
     bool begins = false;     ///< with surface splats: rays may enter the volume, or what clip planes keep, in matter

@@ -44,6 +44,7 @@ gpu::Pass begin_surfaces(const DrawVariant& variant, const glm::ivec2& size) {
                             {{shader::SPEC_ISO_COUNT, variant.iso_count},
                              {shader::SPEC_CLIP_KEEP, variant.clip.keep},
                              {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+                             {shader::SPEC_INNER, variant.inner ? 1U : 0U},
                              {shader::SPEC_SHADOWS, variant.shadows}},
                             gpu::per_pixel(size)}};
     return pass;

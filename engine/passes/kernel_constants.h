@@ -16,7 +16,8 @@ inline gpu::Specialization kernel_constants(const DrawVariant& variant) {
             {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
             {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
             {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
-            {shader::SPEC_TOGETHER, variant.together ? 1U : 0U}};
+            {shader::SPEC_TOGETHER, variant.together ? 1U : 0U},
+            {shader::SPEC_RIM, variant.rim ? 1U : 0U}};
 }
 
 }  // namespace edgesplat::passes

@@ -403,6 +403,33 @@ void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
     v.solid = static_cast<float>(solid_chord(scene, volume.geometry));
 }
 
+/// Fills in where kernels of one volume give way to those of another, or where surfaces of one continue the other's.
+void place_rim(const Rim& rim, const VolumeGeometry& geometry, const glm::dvec3& anchor, FramePlan& plan) {
+    auto& v = plan.volume;
+    v.rim_within = rim.within ? 1 : 0;
+    // Without a rim all is outside, and no surface continues.
+    std::ranges::fill(v.rim, glm::vec4(0, 0, 0, -1));
+    if (plan.variant.surfaces) {
+        for (std::size_t i = 0; i < rim.sides.size(); ++i) {
+            if (!rim.sides[i].inner) continue;
+            const IndexPlane plane = index_clip({.keep = {rim.sides[i].plane}, .remove = {}}, geometry, anchor).keep[0];
+            v.rim[i] = glm::dvec4(plane.normal, plane.offset);
+            plan.variant.inner = true;
+        }
+        return;
+    }
+    plan.variant.rim = rim.any();
+    constexpr double kSharp = 1e-3;  // mm
+    for (std::size_t i = 0; i < rim.sides.size(); ++i) {
+        const RimSide& side = rim.sides[i];
+        const double width = side.inner ? rim.width : kSharp;
+        const glm::dvec3 inwards = -side.plane.normal / width;
+        v.rim[i] = glm::dvec4(glm::transpose(geometry.index_to_world_axes) * inwards,
+                              glm::dot(inwards, geometry.to_world(anchor) - side.plane.point));
+        if (!side.inner && rim.within) v.rim[i] = glm::vec4(0, 0, 0, 1);
+    }
+}
+
 }  // namespace
 
 void place_sheets(FramePlan& plan) {
@@ -472,6 +499,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.narrow = draws_opaque_faces(settings, scene, geometry);
     v.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
     if (plan.variant.surfaces) plan_matter(volume, scene, plan);
+    place_rim(scene.rim, geometry, anchor, plan);
     const glm::dvec3 eye = geometry.to_index(view.eye);
     const std::uint32_t entered = faces_in_sight(geometry.dims, eye);
     const bool begins = entered == 0 ? may_be_matter(volume, v, eye) : (entered & splats.border) != 0;

@@ -26,6 +26,7 @@ passes::DrawVariant variant_of_all(std::span<const FramePlan> plans) {
         all.opaque &= own.opaque;
         all.creases |= own.creases;
         all.outlines |= own.outlines;
+        all.rim |= own.rim;
         for (const auto& [id, value] : own.shading)
             shading[id] = std::max(shading[id], value);
     }

@@ -60,14 +60,19 @@ double mm_along(const View& view, std::size_t pixel) {
     return glm::length(view.geometry.index_to_world_axes * view.ray(number % view.width, number / view.width));
 }
 
+/// One of the scene's volumes alone. `first`: the scene's first volume.
+Scene drawn_alone(const Scene& scene, std::size_t number, const Volume& first) {
+    return scene.added.empty() ? scene_of_volume(scene, number) : scene_of_volume(scene, number, first.geometry);
+}
+
 }  // namespace
 
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& whole_scene, const Settings& settings, bool quantised)
-    : PreparedVolume(volume, scene_of_volume((validate(whole_scene), whole_scene), 0), settings, quantised,
-                     scene_of_volume(whole_scene, 0)) {
+    : PreparedVolume(volume, drawn_alone((validate(whole_scene), whole_scene), 0, volume), settings, quantised,
+                     drawn_alone(whole_scene, 0, volume)) {
     for (std::size_t i = 0; i < whole_scene.added.size(); ++i)
         added_.push_back(std::make_shared<const PreparedVolume>(
-            *whole_scene.added[i].volume, scene_of_volume(whole_scene, i + 1), settings, quantised));
+            *whole_scene.added[i].volume, drawn_alone(whole_scene, i + 1, volume), settings, quantised));
     const Scene& scene = scene_;
     const auto mixture = mixture_of(settings_, scene_, volume);
     if (!mixture) return;
@@ -75,7 +80,7 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& whole_scene, c
         return std::shared_ptr<const PreparedVolume>(new PreparedVolume(volume, of, settings, quantised, scene));
     };
     opaque_ = part(mixture->surfaces);
-    translucent_ = part(mixture->kernels);
+    translucent_ = part(scene_of_kernels(mixture->kernels));
 }
 
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised,
@@ -147,7 +152,7 @@ View PreparedVolume::view_of(const Camera& camera, const glm::ivec2& size, const
 void PreparedVolume::add_surfaces(SurfacePicture& seen, std::span<const SplatRecord> lit, const View& view,
                                   Output output) const {
     const SurfacePicture own =
-        draw_surfaces(lit, field(), *surface_scene_, scene_, view, settings_, payload_for(output));
+        draw_surfaces(lit, field(), *surface_scene_, scene_of_surfaces(scene_), view, settings_, payload_for(output));
     seen.pixels.resize(own.pixels.size());
     seen.outlines.resize(own.outlines.size());
     for (std::size_t i = 0; i < own.outlines.size(); ++i)
@@ -287,8 +292,11 @@ void PreparedVolume::find_light(std::span<SplatRecord> records, std::span<const 
 
 std::vector<SplatRecord> PreparedVolume::lit_kernels(const glm::dvec3& eye, Output output,
                                                      std::span<const LightMatter> matter) const {
-    std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
-                                                      eye, output == Output::Tau, classified_, carried_);
+    std::vector<SplatRecord> records =
+        collect_splats(field(), scaled_, edges_, scene_of_kernels(scene_), volume_->geometry, settings_, eye,
+                       output == Output::Tau, classified_, carried_);
+    for (SplatRecord& record : records)
+        record.weight *= scene_.rim.share(volume_->geometry.to_world(glm::dvec3(field().voxel(record.voxel))));
     if (output == Output::Color) find_light(records, matter);
     return records;
 }
@@ -327,15 +335,15 @@ class PreparedVolume::DrawnKernels {
           ends_(behind ? ends_of(*behind, view) : std::vector<double>{}),
           selected_(select_footprints(kernels.records, field_, view_, kernels.part->settings_,
                                       kernels.part->footprints_, sheets,
-                                      index_clip(kernels.part->scene_.effects.clip, view.geometry))),
+                                      index_clip(scene_of_kernels(kernels.part->scene_).effects.clip, view.geometry))),
           sorted_(sort_sheets(selected_)),
           footprints_(
               kernels.part->settings_, table_depth(kernels.part->scene_, view.geometry),
               output != Output::Tau && has_single_piece(kernels.part->settings_, kernels.part->scene_, view.geometry)
                   ? FacePieces::Longer
                   : FacePieces::Both),
-          drawer_(kernels.records, selected_, field_, kernels.part->scene_, view_, kernels.part->settings_, footprints_,
-                  ends_) {}
+          scene_(scene_of_kernels(kernels.part->scene_)),
+          drawer_(kernels.records, selected_, field_, scene_, view_, kernels.part->settings_, footprints_, ends_) {}
 
     std::size_t sheets() const { return sorted_.sheets(); }
     std::span<const std::uint32_t> sheet(std::size_t number) const {
@@ -357,6 +365,7 @@ class PreparedVolume::DrawnKernels {
     std::vector<Selected> selected_;
     SortedSheets sorted_;
     Footprints footprints_;
+    Scene scene_;
     SplatDrawer drawer_;
 };
 

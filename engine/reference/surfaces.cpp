@@ -253,9 +253,24 @@ dvec3 payload_at(const geometry::SurfaceVotes& votes, const Seen& seen, const Sc
     return normal;
 }
 
+/// Whether a place lies in a side of the rim, beyond which matter of another volume continues.
+bool is_at_rim(std::span<const IndexPlane> sides, const dvec3& at) {
+    return std::ranges::any_of(sides, [&](const IndexPlane& side) {
+        return std::abs(side.distance(at)) < static_cast<double>(shader::RIM_WIDTH);
+    });
+}
+
+/// The inner sides of the rim.
+std::vector<IndexPlane> inner_sides(const Rim& rim, const VolumeGeometry& geometry) {
+    Clip sides;
+    for (const RimSide& side : rim.sides)
+        if (side.inner) sides.keep.push_back(side.plane);
+    return index_clip(sides, geometry).keep;
+}
+
 /// Matter that begins where the ray enters a part, certainly.
-geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, std::span<const RayPart> parts,
-                            const dvec3& eye, const dvec3& u) {
+geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, std::span<const IndexPlane> rim,
+                            std::span<const RayPart> parts, const dvec3& eye, const dvec3& u) {
     const ScaledScene& materials = surfaces.materials;
     geometry::SurfacePair pair = geometry::no_surfaces();
     for (const RayPart& part : parts) {
@@ -266,11 +281,18 @@ geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, st
                             field.has_data(field.offset(field.clamped(ivec3(glm::round(at)))));
         if (pair.front.hits > 0 || !matter) continue;
         // An eye in matter sees nothing else.
-        const dvec3 n = part.n == dvec3(0) ? -u : part.n;
+        dvec3 n = part.n == dvec3(0) ? -u : part.n;
         const ScaledScene& bodies = surfaces.bodies;
         const int body = bodies.material(value);
-        double chord = geometry::chord_in_body(value, glm::dot(spline_gradient(field, at), u), bodies.lower(body),
-                                               bodies.upper(body));
+        const dvec3 gradient = spline_gradient(field, at);
+        if (part.n != dvec3(0) && is_at_rim(rim, at)) {
+            // Where another volume's surface ends, this one's continues it: what is seen is no cut.
+            const double up = bodies.upper(body) - value, down = value - bodies.lower(body);
+            const dvec3 outwards = up < down ? gradient : -gradient;
+            const bool near = std::min(up, down) < static_cast<double>(shader::SURFACE_STEP) * glm::length(gradient);
+            if (near && glm::dot(outwards, u) < 0) n = outwards;
+        }
+        double chord = geometry::chord_in_body(value, glm::dot(gradient, u), bodies.lower(body), bodies.upper(body));
         if (chord < static_cast<double>(shader::SURFACE_CHORD)) {
             // Matter soon behind counts, too.
             constexpr auto kStep = static_cast<double>(shader::SURFACE_PROBE);
@@ -326,6 +348,7 @@ std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& 
 SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& field, const SurfaceScene& surfaces,
                              const Scene& scene, const View& view, const Settings& settings, Payload payload) {
     const IndexClip clip = index_clip(scene.effects.clip, view.geometry);
+    const std::vector<IndexPlane> rim = inner_sides(scene.rim, view.geometry);
     const double thickness = sheet_thickness(view, settings);
     std::vector<DrawnSplat> splats;
     splats.reserve(records.size());
@@ -381,7 +404,7 @@ SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& 
                 Pixel& pixel = pixels[static_cast<std::size_t>(y - begin) * width + static_cast<std::size_t>(x)];
                 const dvec3 u = view.ray(x, y);
                 pixel.parts = ray_parts(field, clip, view.eye_index, u);
-                pixel.pair = begun(field, surfaces, pixel.parts, view.eye_index, u);
+                pixel.pair = begun(field, surfaces, rim, pixel.parts, view.eye_index, u);
                 pixel.closed =
                     !pixel.parts.empty() && geometry::begins_and_hides(pixel.pair.front, pixel.parts[0].first, solid);
             }

@@ -120,24 +120,6 @@ std::string raycast_obstacle(const Scene& scene) {
     return "";
 }
 
-namespace {
-
-/// Planes through the sides of a grid, half a voxel beyond its outermost samples. Their normals point outwards.
-std::vector<Plane> sides_of(const VolumeGeometry& geometry) {
-    std::vector<Plane> planes;
-    const glm::dmat3 normals = glm::transpose(glm::inverse(geometry.index_to_world_axes));
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double side : {-1.0, 1.0}) {
-            const glm::dvec3 middle = 0.5 * glm::dvec3(geometry.dims - 1);
-            glm::dvec3 at = middle;
-            at[axis] += side * 0.5 * geometry.dims[axis];
-            planes.push_back({geometry.to_world(at), side * unit(normals[axis])});
-        }
-    return planes;
-}
-
-}  // namespace
-
 Scene scene_of_volume(const Scene& scene, std::size_t number) {
     Scene one = scene;
     one.added.clear();
@@ -156,9 +138,47 @@ Scene scene_of_volume(const Scene& scene, std::size_t number) {
         if (!one.effects.clip.remove.empty())
             fail("volumes[{}]: replaces the others within its grid, but another region is removed, too; expected one",
                  i);
-        one.effects.clip.remove = sides_of(scene.added[i].volume->geometry);
+        for (const RimSide& side : rim_of(scene.added[i].volume->geometry, {}, 0).sides)
+            one.effects.clip.remove.push_back(side.plane);
     }
     return one;
+}
+
+Scene scene_of_volume(const Scene& scene, std::size_t number, const VolumeGeometry& first) {
+    Scene one = scene_of_volume(scene, number);
+    for (std::size_t i = 0; i < scene.added.size(); ++i) {
+        if (!scene.added[i].replaces) continue;
+        std::vector<VolumeGeometry> others;
+        for (std::size_t k = 0; k <= scene.added.size(); ++k)
+            if (k != i + 1 && has_matter(scene_of_volume(scene, k)))
+                others.push_back(k == 0 ? first : scene.added[k - 1].volume->geometry);
+        one.rim = rim_of(scene.added[i].volume->geometry, others, scene.added[i].rim);
+        one.rim.within = i + 1 == number;
+        if (one.rim.within) break;
+    }
+    return one;
+}
+
+Scene scene_of_surfaces(Scene scene) {
+    if (!scene.rim.any()) return scene;
+    Clip& clip = scene.effects.clip;
+    if (!scene.rim.within) clip.remove.clear();
+    for (const RimSide& side : scene.rim.sides)
+        if (!scene.rim.within)
+            clip.remove.push_back(side.plane);
+        else if (side.inner)
+            clip.keep.push_back(side.plane);
+    if (clip.keep.size() > kMaxClipPlanes)
+        fail(
+            "volumes: a volume that replaces the others has {} clip planes with the sides of its rim, expected at most "
+            "{}",
+            clip.keep.size(), kMaxClipPlanes);
+    return scene;
+}
+
+Scene scene_of_kernels(Scene scene) {
+    if (scene.rim.any() && !scene.rim.within) scene.effects.clip.remove.clear();
+    return scene;
 }
 
 bool has_matter(const Scene& scene) {

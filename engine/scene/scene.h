@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/scene/effects.h"
+#include "engine/scene/rim.h"
 
 namespace edgesplat {
 
@@ -77,6 +78,7 @@ struct AddedVolume {
     std::vector<glm::dvec3> label_colors;
     bool clipped = true;
     bool replaces = false;  ///< within its grid, the other volumes have no matter
+    double rim = 0;         ///< Rim::width; 0: automatic
     bool operator==(const AddedVolume&) const = default;
 };
 
@@ -96,11 +98,19 @@ struct Scene {
     Effects effects;
     bool clipped = true;             ///< whether clip planes cut the first volume
     std::vector<AddedVolume> added;  ///< at most kMaxVolumes - 1
+    Rim rim;                         ///< only of a volume alone (scene_of_volume)
 };
 
 /// The scene with one of its volumes alone, without the region in which another one replaces it. `number`: 0 is the
 /// first, the others follow in the order of `added`. Throws Error if two regions would be removed.
 Scene scene_of_volume(const Scene& scene, std::size_t number);
+
+/// The same with its rim. `first`: grid of the scene's first volume.
+Scene scene_of_volume(const Scene& scene, std::size_t number, const VolumeGeometry& first);
+
+/// The scenes of a volume's surfaces and of its kernels: surfaces are cut at the sides of the rim.
+Scene scene_of_surfaces(Scene scene);
+Scene scene_of_kernels(Scene scene);
 
 /// Whether some value is matter.
 bool has_matter(const Scene& scene);

@@ -43,6 +43,7 @@ struct VolumeSource {
     bool visible = true;            ///< whether its matter is drawn
     bool clip = true;               ///< whether the scene's clip planes cut it
     VolumeRule rule = VolumeRule::Add;
+    double rim = 0;        ///< mm, of VolumeRule::Inside (AddedVolume::rim)
     std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
     bool operator==(const VolumeSource&) const = default;
 

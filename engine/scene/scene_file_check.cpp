@@ -21,6 +21,8 @@ class Checker {
         : d_(document), folders_(folders) {
         if (!added && d_.volume.rule != VolumeRule::Add)
             add("volume.rule", "\"inside\" is for a volume beside the first; expected it in an entry of [[volumes]]");
+        if (d_.volume.rim > 0 && d_.volume.rule != VolumeRule::Inside)
+            add("volume.rim", "a rim is where a volume replaces the others; expected volume.rule = \"inside\"");
     }
 
     std::vector<DocumentProblem> run() {

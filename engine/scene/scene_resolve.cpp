@@ -269,7 +269,7 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
             Scene one = resolved_alone(entry, *entry.read->volume, i + 1);
             scene.added.push_back({entry.read->volume, std::move(one.iso_values), std::move(one.materials),
                                    std::move(one.transfer), std::move(one.label_colors), one.clipped,
-                                   entry.volume.rule == VolumeRule::Inside && entry.volume.visible});
+                                   entry.volume.rule == VolumeRule::Inside && entry.volume.visible, entry.volume.rim});
         } catch (const Error& error) {
             fail("volumes[{}]: {}", i, error.what());
         }

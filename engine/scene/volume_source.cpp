@@ -140,6 +140,7 @@ void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders,
         VolumeSource source = entry.volume;
         source.visible = source.clip = true;
         source.rule = VolumeRule::Add;
+        source.rim = 0;
         return std::pair(source, entry.iso_values);
     };
     for (std::size_t i = 0; i < document.volumes.size(); ++i) {

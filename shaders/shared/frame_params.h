@@ -61,6 +61,10 @@ struct VolumeParams {
     uint has_transfer;
     uint has_labels;
     uint lit_edges;
+    // Only with a rim (rim.glsl). Planes whose value at a place relative to the anchor rises from 0 at the rim's outside
+    // to 1 at its inside; of surfaces, the distance to the side, voxels. 1: this is the volume within.
+    uint rim_within;
+    vec4 rim[6];
     // Only with surface splats.
     uint visible_mask;  // bit m: material m is matter
     float solid;        // voxels of matter along a ray behind which nothing is seen
@@ -155,7 +159,7 @@ static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::VolumeParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::VolumeParams, materials) == 216);
-static_assert(sizeof(edgesplat::shader::VolumeParams) == 1132);
+static_assert(sizeof(edgesplat::shader::VolumeParams) == 1232);
 static_assert(offsetof(edgesplat::shader::FrameParams, size) == 208);
 static_assert(sizeof(edgesplat::shader::FrameParams) == 580);
 static_assert(offsetof(edgesplat::shader::FrameBlock, volumes) == sizeof(edgesplat::shader::FrameParams));

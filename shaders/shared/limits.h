@@ -84,6 +84,8 @@ EDGESPLAT_CONSTANT float SURFACE_CERTAIN = 1e3f;  // weight of matter that begin
 EDGESPLAT_CONSTANT uint NUMBERED_SPLATS = 0xfffffffu;  // numbers of surface splats in votes lie below this minus MAX_MATERIALS
 EDGESPLAT_CONSTANT uint BEGUN_MATTER = 0xfffffff0u;  // plus a material: stands for a splat's number where matter begins so
 EDGESPLAT_CONSTANT uint VOTE_TEXELS = 6u;       // of a pixel: both surfaces' votes, ten numbers each, and those against
+EDGESPLAT_CONSTANT float SURFACE_STEP = 2.0f;  // voxels: where surfaces of two volumes join, they lie no farther apart
+EDGESPLAT_CONSTANT float RIM_WIDTH = 0.05f;    // voxels from a side of a rim within which a ray begins there
 EDGESPLAT_CONSTANT float SURFACE_EARLY = 1.0f;   // a face that a ray enters at most this far before a border or plane, within SURFACE_SIDE of it, is seen there
 EDGESPLAT_CONSTANT float SURFACE_SIDE = 0.1f;    // the same of samples on a kept face's wrong side, without noise
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // steps towards the foot point on a quadric
@@ -175,7 +177,9 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */ \
     X(SPEC_MIXED, 48u)        /* 1: surface splats draw opaque matter, kernels translucent matter in front of it */ \
     X(SPEC_BESIDE, 49u)       /* 1: the matter that attenuates light is that of another volume than the splats' */ \
-    X(SPEC_TOGETHER, 50u)     /* 1: kernels of several volumes are drawn as one list */
+    X(SPEC_TOGETHER, 50u)     /* 1: kernels of several volumes are drawn as one list */ \
+    X(SPEC_RIM, 51u)          /* 1: along a rim, kernels of one volume give way to those of another */ \
+    X(SPEC_INNER, 52u)        /* 1: surfaces of one volume continue those of another */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -22,6 +22,7 @@ layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 #include "shaders/common/frame.glsl"
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
+#include "shaders/common/rim.glsl"
 #define CLIP_PARAMS params.of_volume
 #include "shaders/common/clip.glsl"
 
@@ -79,6 +80,7 @@ void main() {
         beside = 0.0;
         drawn = drawn && !looks_away(own, e, splat.edge >> 28, p);
     }
+    if (RIM == 1u) drawn = drawn && rim_share(p.position) > 0.0;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p) + (SURFACES == 1u ? SURFACE_EARLY : 0.0));
     if (FOOTPRINTS == TABLE && drawn) {
         uint material = splat.edge >> 28;

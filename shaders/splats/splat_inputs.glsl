@@ -5,6 +5,7 @@
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 #include "shaders/footprints/kernel.glsl"
+#include "shaders/common/rim.glsl"
 
 // With surface splats, the first three numbers of FaceForm::cut are the foot point, and color_sigma.w is the reach.
 layout(constant_id = SPEC_LABELS) const uint LABELS = 0u;
@@ -44,6 +45,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     bool lit_edges = LIT_EDGES == 1u && (TOGETHER == 0u || params.of_volume.lit_edges == 1u);
     bool through = (params.of_volume.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
     if (FACES) material.a *= through ? border_weight(ivec3(round(p.position + params.of_volume.anchor))) : 1.0;
+    if (RIM == 1u) material.a *= rim_share(p.position);
     // The outward normal points to lower values, on either side of the surface.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.of_volume.normal_to_world * outward);

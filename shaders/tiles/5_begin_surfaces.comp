@@ -10,6 +10,7 @@ layout(local_size_x = 256) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_INNER) const uint INNER = 0u;
 const uint CREASES = 0u, LABELS = 0u;
 #include "shaders/common/frame.glsl"
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
@@ -29,12 +30,28 @@ ivec3 dims;
 #include "shaders/light/shadow.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
-// The material at p, index space, and how far the ray along u stays in the body there. The field itself is evaluated only
-// where the samples around leave a doubt.
+// The material at p, index space, and how far the ray along u stays in the body there. `n`: normal of the body's surface
+// nearby; 0 if none is near. The field itself is evaluated only where the samples around leave a doubt.
 struct BegunMatter {
     uint material;
     float chord;
+    vec3 n;
 };
+
+// Whether a place, relative to the anchor, lies in a side of the rim, beyond which matter of another volume continues.
+bool is_at_rim(vec3 place) {
+    bool at_side = false;
+    for (int i = 0; i < 6; ++i) at_side = at_side || abs(dot(params.of_volume.rim[i], vec4(place, 1.0))) < RIM_WIDTH;
+    return at_side;
+}
+// The normal of the body's nearest surface, to its outside, from its value and gradient at a place; 0 if none is within
+// SURFACE_STEP voxels.
+vec3 normal_nearby(vec4 field, vec2 body) {
+    float slope = length(field.xyz), up = body.y - field.w, down = field.w - body.x;
+    vec3 outwards = (up < down ? field.xyz : -field.xyz) / max(slope, 1e-12);
+    return min(up, down) < SURFACE_STEP * slope ? outwards : vec3(0.0);
+}
+
 BegunMatter begun_at(vec3 p, vec3 u) {
     ivec3 cell = clamp(ivec3(floor(p)), ivec3(0), dims - 1);
     float least = voxel(cell), most = least;
@@ -44,12 +61,16 @@ BegunMatter begun_at(vec3 p, vec3 u) {
         most = max(most, corner);
     }
     float spread = most - least;
-    BegunMatter begun = BegunMatter(material_of(least), SURFACE_CHORD);
+    BegunMatter begun = BegunMatter(material_of(least), SURFACE_CHORD, vec3(0.0));
     bool doubt = material_of(least - SURFACE_DOUBT * spread) != material_of(most + SURFACE_DOUBT * spread);
     IF_ANY(doubt) {
         vec4 field = bspline_slope(ivec3(0), p);
         vec2 body = body_around(field.w);
-        if (doubt) begun = BegunMatter(material_of(field.w), chord_in_body(field.w, dot(field.xyz, u), body.x, body.y));
+        if (doubt) {
+            begun.material = material_of(field.w);
+            begun.chord = chord_in_body(field.w, dot(field.xyz, u), body.x, body.y);
+            if (INNER == 1u) begun.n = normal_nearby(field, body);
+        }
         // Matter soon behind counts, too.
         bool thin = doubt && is_drawn(begun.material) && begun.chord < SURFACE_CHORD;
         IF_ANY(thin) {
@@ -68,6 +89,8 @@ void begin_part(inout SurfaceVotes votes, RayPart part, vec3 from, vec3 u) {
     IF_ANY(enters) {
         vec3 at = from + part.first * u;
         BegunMatter begun = begun_at(at, u);
+        // Where another volume's surface ends, this one's continues it: what is seen is no cut.
+        if (INNER == 1u && part.n != vec3(0.0) && is_at_rim(at - params.of_volume.anchor)) n = dot(begun.n, u) < 0.0 ? begun.n : n;
         enters = enters && is_drawn(begun.material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
         if (enters) begin_matter(votes, part.first, min(begun.chord, part.last - part.first), normalize(n), BEGUN_MATTER | begun.material);
     }

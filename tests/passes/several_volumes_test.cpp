@@ -73,6 +73,12 @@ std::vector<PassScene> scenes() {
         s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
         s.scene.ambient = 0.5;
     });
+    add("inside", [](PassScene& s) {
+        // The surfaces of both lie half a voxel apart.
+        s.scene.added[0] =
+            added_volume(ball_on_grid({2, -4, 1}, 5, 0.7 * kOblique), {-0.5}, {solid_matter({1, 0.8, 0.5})});
+        s.scene.added[0].replaces = true;
+    });
     add("outlines", [](PassScene& s) { s.scene.effects.smooth_outlines = true; });
     add("refined", [](PassScene& s) {
         s.settings.pixels = PixelChoice::Refined;
@@ -141,7 +147,8 @@ TEST(SeveralVolumes, AreExactForUnlitBalls) {
 
 TEST(SeveralVolumes, DoNotDependOnTheirOrder) {
     for (const PassScene& s : scenes()) {
-        if (s.scene.added.size() != 1 || !s.scene.added[0].clipped) continue;
+        const AddedVolume& beside = s.scene.added[0];
+        if (s.scene.added.size() != 1 || !beside.clipped || beside.replaces) continue;
         SCOPED_TRACE(s.name);
         PassScene other = s;
         other.scene = exchanged(s, other.volume);
@@ -248,7 +255,7 @@ TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
             const glm::dvec3 u = view.ray(x, y);
             const double depth = static_cast<double>(depths[i].x);
             const glm::dvec3 at = view.eye_index + u * (depth / glm::dot(u, view.frame.forward));
-            const double beside = at.x - (kLast + 0.5);  // of the cut, voxels
+            const double beside = at.x - (kLast - 1);  // of the cut, voxels
             // At the seam nothing is seen that neither scan shows: what counts is how far a colour is from both.
             const glm::vec4 low = glm::min(want[i], whole_coarse[i]), high = glm::max(want[i], whole_coarse[i]);
             if (beside < -1.5)
@@ -265,12 +272,13 @@ TEST(SeveralVolumes, InsideAFinerScanOnlyThatIsShown) {
     EXPECT_GT(beyond.pixels, 100);
     EXPECT_GE(in_fine.decibels(), 60);
     EXPECT_GE(beyond.decibels(), 60);
-    EXPECT_GE(at_seam.decibels(), 38);
+    EXPECT_GE(at_seam.decibels(), 48);
 }
 
 /// A volume without matter changes no bit.
 TEST(SeveralVolumes, CostNothingIfTheyHaveNoMatter) {
     for (PassScene s : scenes()) {
+        if (s.scene.added[0].replaces) continue;
         SCOPED_TRACE(s.name);
         PassScene alone = s;
         alone.scene.added.clear();

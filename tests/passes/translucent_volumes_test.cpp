@@ -84,6 +84,14 @@ std::vector<PassScene> cloud_scenes() {
             added_volume(ball_on_grid({1, -2, 0.5}, 4, 0.7 * kOblique), {-1.5}, {cloud({0.4, 0.6, 1}, 0.2)});
         s.scene.added[0].replaces = true;
     });
+    add("mixtures, one inside", [](PassScene& s) {
+        s.scene.iso_values = {0, 4};
+        s.scene.materials = {{}, cloud({0.3, 0.5, 1}, 0.12), solid_matter({1, 0.8, 0.5})};
+        s.scene.added[0] = added_volume(ball_on_grid({0, 0, 0}, 6, 0.6 * kOblique), {-1.5, 2},
+                                        {cloud({0.3, 0.5, 1}, 0.12), solid_matter({1, 0.8, 0.5})});
+        s.scene.added[0].replaces = true;
+        s.scene.added[0].rim = 2;
+    });
     add("eye in both", [](PassScene& s) {
         s.camera = {.eye = {4, -2, 1}, .direction = {-3, 5, -1}, .up = {0, 0, 1}, .fov_y = 90};
     });
@@ -177,6 +185,58 @@ TEST(TranslucentVolumes, AddTheirMatter) {
     compare("cloud", 95, [](PassScene&) {});
     compare("dense", 90, [](PassScene& s) { s.scene.materials[1].extinction = 0.4; });
     compare("table", 100, [](PassScene& s) { use_table(s.scene); });
+}
+
+/// A coarse scan of the whole, a fine one of two thirds: inside the rim the picture is that of the fine whole, outside
+/// that of the coarse one, and along the rim it lies between both.
+TEST(TranslucentVolumes, GiveWayAlongTheRim) {
+    PassScene fine;
+    fine.volume = sample(torus_scene({56, 52, 40}, {27.3, 25.6, 19.4}, 15.2, 7.6));
+    fine.scene.iso_values = {0.5};
+    fine.scene.materials = {{}, cloud({1, 0.8, 0.5}, 0.08)};
+    fine.settings.pixels = PixelChoice::Every;
+    fine.camera = {.eye = {27, -120, 62}, .direction = {0, 145, -43}, .up = {0, 0, 1}, .fov_y = 22};
+    PassScene coarse = fine;
+    coarse.volume = halved(fine.volume);
+    PassScene both = coarse;
+    constexpr int kLast = 36;
+    constexpr double kRim = 12;  // six voxels of the coarse scan
+    both.scene.added = {added_volume(std::make_shared<const Volume>(cropped(fine.volume, {0, 0, 0}, {kLast, 51, 39})),
+                                     {0.5}, {fine.scene.materials[1]})};
+    both.scene.added[0].replaces = true;
+    const auto want = drawn_beside(fine), other = drawn_beside(coarse), got = drawn_beside(both);
+    const reference::View view(fine.camera, fine.volume.geometry, kBesideSize.x, kBesideSize.y);
+    double in_fine = 0, beyond = 0, worst = 0;
+    int fine_pixels = 0, other_pixels = 0, rim_pixels = 0;
+    for (int y = 0; y < kBesideSize.y; ++y)
+        for (int x = 0; x < kBesideSize.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * kBesideSize.x + x);
+            // The ray through the torus between these x, voxels.
+            const glm::dvec3 u = view.ray(x, y);
+            const auto x_at = [&](double depth) { return view.eye_index.x + u.x / u.y * (depth - view.eye_index.y); };
+            const double low = std::min(x_at(0), x_at(51)), high = std::max(x_at(0), x_at(51));
+            const auto squares = [&](const glm::vec4& by) { return static_cast<double>(glm::dot(by, by)) / 4; };
+            if (want[i].a < 0.02F) continue;
+            if (high < kLast - kRim - 2.5) {
+                in_fine += squares(got[i] - want[i]);
+                ++fine_pixels;
+            } else if (low > kLast + 2.5) {
+                beyond += squares(got[i] - other[i]);
+                ++other_pixels;
+            } else {
+                ++rim_pixels;
+                const glm::vec4 least = glm::min(want[i], other[i]), most = glm::max(want[i], other[i]);
+                const glm::vec4 off = glm::abs(got[i] - glm::clamp(got[i], least, most));
+                worst = std::max(worst, static_cast<double>(std::max({off.r, off.g, off.b, off.a})));
+            }
+        }
+    std::printf("fine part %.1f dB, coarse part %.1f dB, rim at most %.4f off\n",
+                -10 * std::log10(in_fine / fine_pixels + 1e-20), -10 * std::log10(beyond / other_pixels + 1e-20),
+                worst);
+    EXPECT_GT(std::min({fine_pixels, other_pixels, rim_pixels}), 100);
+    EXPECT_LE(in_fine / fine_pixels, 1e-6);
+    EXPECT_LE(beyond / other_pixels, 1e-6);
+    EXPECT_LE(worst, 0.01);
 }
 
 /// What two balls let through along a ray depends on the lengths in both alone.

@@ -214,6 +214,41 @@ TEST(SceneVolumes, ReplaceTheOthersInside) {
     EXPECT_TRUE(scene_of_volume(resolve_scene(document, first), 0).effects.clip.remove.empty());
 }
 
+/// Across the rim, one volume's share falls as the other's rises; sides beyond which nothing continues have none.
+TEST(SceneVolumes, GiveWayAlongRims) {
+    Volume first;
+    SceneDocument document = read(kText, first);
+    document.volumes[0].volume.rule = VolumeRule::Inside;
+    Scene scene = resolve_scene(document, first);
+    auto inner = std::make_shared<Volume>(first);
+    // The first volume's low half along x, on a grid of half the spacing.
+    inner->geometry.index_to_world_axes *= 0.5;
+    inner->geometry.dims = first.geometry.dims * glm::ivec3(1, 2, 2);
+    inner->geometry.origin = first.geometry.to_world(glm::dvec3(-0.25));
+    scene.added[0].volume = inner;
+    const auto rim = [&](std::size_t number) { return scene_of_volume(scene, number, first.geometry).rim; };
+    const Rim outside = rim(0), within = rim(1);
+    EXPECT_TRUE(within.within && !outside.within);
+    EXPECT_DOUBLE_EQ(outside.width, 0.5 * std::min(6 * 2 * first.geometry.spacing().x,
+                                                   first.geometry.dims.x * 0.5 * first.geometry.spacing().x));
+    for (std::size_t side = 0; side < 6; ++side)
+        EXPECT_EQ(outside.sides.at(side).inner, side == 1) << side;
+    double last = 1;
+    const double middle = 0.5 * (first.geometry.dims.y - 1);
+    for (double x = 1; x < first.geometry.dims.x; x += 0.25) {
+        const glm::dvec3 at = first.geometry.to_world({x, middle, middle});
+        EXPECT_NEAR(within.share(at) + outside.share(at), 1, 1e-12);
+        EXPECT_LE(within.share(at), last);
+        last = within.share(at);
+    }
+    EXPECT_EQ(last, 0);
+    EXPECT_EQ(within.share(first.geometry.to_world({0, middle, middle})), 1);
+    scene.added[0].rim = 1;
+    EXPECT_DOUBLE_EQ(rim(0).width, 1);
+    scene.added[0].replaces = false;
+    EXPECT_FALSE(rim(0).any() || rim(1).any());
+}
+
 /// A named view frames the matter of all volumes.
 TEST(SceneVolumes, AreAllInThePicture) {
     Volume first;
