@@ -162,7 +162,9 @@ void print(const std::vector<Measured>& rows, bool markdown) {
     for (const Measured& row : rows) {
         // An effect without setup work has no setup ratio: it would be noise.
         const Effect& effect = *row.effect;
-        const bool sets_up = !effect.passes.empty() || !effect.resources.empty() || !effect.scene_fields.empty();
+        const bool other_splats = std::ranges::count(effect.resized, "splat list") > 0;
+        const bool sets_up =
+            other_splats || !effect.passes.empty() || !effect.resources.empty() || !effect.scene_fields.empty();
         cells.push_back({std::string(effect.name), std::string(effect.call), ratio(row.frame_ratio),
                          sets_up ? ratio(row.setup_ratio) : "-", bytes(row.bytes)});
     }

@@ -226,6 +226,7 @@ std::vector<Effect> settings_effects() {
          .turn_on =
              [](FrameRequest& r) {
                  if (r.scene.added.empty()) add_moved_volume(r, r.scene.iso_values, r.scene.materials);
+                 draw_opaque_surfaces(r);
                  r.scene.added.back().replaces = true;
              },
          .base =

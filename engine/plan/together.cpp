@@ -38,7 +38,7 @@ passes::DrawVariant variant_of_all(std::span<const FramePlan> plans) {
 void fill_clip(shader::VolumeParams& volume, const passes::ClipCount& own, const passes::ClipCount& all) {
     for (std::uint32_t i = own.keep; i < all.keep; ++i)
         volume.clip_keep[i] = glm::vec4(0, 0, 0, -kNowhere);
-    // What all planes have behind them is removed: nothing, or what the volume's own have.
+    // The planes remove a region together: none, or the one of the volume's own planes.
     for (std::uint32_t i = own.remove; i < all.remove; ++i)
         volume.clip_remove[i] = glm::vec4(0, 0, 0, own.remove == 0 ? kNowhere : -kNowhere);
 }

@@ -286,7 +286,7 @@ geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, st
         const int body = bodies.material(value);
         const dvec3 gradient = spline_gradient(field, at);
         if (part.n != dvec3(0) && is_at_rim(rim, at)) {
-            // Where another volume's surface ends, this one's continues it: what is seen is no cut.
+            // This volume's surface continues that of another volume, so the ray does not see a cut.
             const double up = bodies.upper(body) - value, down = value - bodies.lower(body);
             const dvec3 outwards = up < down ? gradient : -gradient;
             const bool near = std::min(up, down) < static_cast<double>(shader::SURFACE_STEP) * glm::length(gradient);

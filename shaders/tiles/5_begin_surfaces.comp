@@ -89,7 +89,7 @@ void begin_part(inout SurfaceVotes votes, RayPart part, vec3 from, vec3 u) {
     IF_ANY(enters) {
         vec3 at = from + part.first * u;
         BegunMatter begun = begun_at(at, u);
-        // Where another volume's surface ends, this one's continues it: what is seen is no cut.
+        // This volume's surface continues that of another volume, so the ray does not see a cut.
         if (INNER == 1u && part.n != vec3(0.0) && is_at_rim(at - params.of_volume.anchor)) n = dot(begun.n, u) < 0.0 ? begun.n : n;
         enters = enters && is_drawn(begun.material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
         if (enters) begin_matter(votes, part.first, min(begun.chord, part.last - part.first), normalize(n), BEGUN_MATTER | begun.material);

@@ -57,6 +57,8 @@ bool excludes(std::string_view off, std::string_view by) {
     if (surfaces && (by == "antialias" || by == "transfer function" || by == "sliced sheets" || by == "output tau" ||
                      by == "footprint table"))
         return true;
+    // All matter is translucent then.
+    if ((surfaces || off == "several volumes") && by == "translucent volumes") return true;
     // Slices are integrated.
     return off == "footprint table" && by == "sliced sheets";
 }
@@ -109,13 +111,17 @@ void blank_thin(Image& image, const Image& color) {
                 image.at(x, y, c) = 0;
 }
 
-/// Effects that several volumes are refused with: kernels would draw their opaque matter.
+/// Effects that several volumes are refused with: kernels would draw their opaque matter, or light would pass matter
+/// that is replaced.
 bool is_refused(const EffectSet& effects) {
     const auto has = [&](std::string_view name) {
         return std::ranges::any_of(effects, [&](std::size_t i) { return effect_table()[i].name == name; });
     };
-    return has("several volumes") && (has("antialias") || has("transfer function") || has("sliced sheets") ||
-                                      has("footprint table") || has("output tau"));
+    const bool kernels = has("antialias") || has("transfer function") || has("sliced sheets") || has("footprint table");
+    const bool inside = has("volume inside");
+    return (has("several volumes") && (kernels || has("output tau"))) ||
+           (has("translucent volumes") && has("output tau")) ||
+           (inside && (kernels || has("shadows") || has("ambient occlusion") || has("clip") || has("output tau")));
 }
 
 /// Draws the effects together on the device and by the reference. Returns false if the device lacks layers.

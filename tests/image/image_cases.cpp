@@ -353,6 +353,14 @@ std::vector<ImageCase> reference_cases() {
                             .transfer = {},
                             .label_colors = {}}};
     cases.push_back({"opaque torus and another one on its own grid", several});
+    Shot clouds = several;
+    for (Material& material : clouds.scene.materials)
+        material.extinction /= 80;
+    clouds.scene.added[0].materials[1].extinction = 0.2;
+    cases.push_back({"translucent torus and another one on its own grid", clouds});
+    several.scene.added[0].replaces = clouds.scene.added[0].replaces = true;
+    cases.push_back({"opaque torus, another one inside", several});
+    cases.push_back({"translucent torus, another one inside", clouds});
     cases.push_back({"oblique orbital, normals", oblique_orbital(), Output::Normal});
     cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
     for (ImageCase& c : later_cases())
