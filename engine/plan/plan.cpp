@@ -432,6 +432,11 @@ void place_rim(const Rim& rim, const VolumeGeometry& geometry, const glm::dvec3&
 
 }  // namespace
 
+double SplatDepths::least_thickness() const {
+    // The first and the last may be cut.
+    return (farthest - std::max(nearest, 0.0)) / (kMaxSheets - 2);
+}
+
 void place_sheets(FramePlan& plan) {
     const SplatDepths& depths = plan.depths;
     const double thickness = depths.thickness;

@@ -102,6 +102,8 @@ struct SplatDepths {
     double anchor = 0;                 ///< VolumeParams::anchor
     double reach = 0;                  ///< how far a kernel reaches from its voxel
     double thickness = 0;              ///< of a sheet
+    /// The thinnest sheets that a picture of these depths can have.
+    double least_thickness() const;
 };
 
 /// Plan of passes 3 to 7 for one picture.

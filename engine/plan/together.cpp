@@ -64,6 +64,8 @@ FramePlan plan_together(std::span<const FramePlan> plans) {
         out.depths.reach = std::max(out.depths.reach, plan.depths.reach);
         out.depths.thickness = std::min(out.depths.thickness, plan.depths.thickness);
     }
+    // A tiny grid beside a large one must not need more sheets than there can be.
+    out.depths.thickness = std::max(out.depths.thickness, out.depths.least_thickness());
     out.bricks.clear();
     out.label_colors.clear();
     std::vector<glm::uvec2> batches;

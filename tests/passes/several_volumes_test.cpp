@@ -334,14 +334,23 @@ TEST(SeveralVolumes, GiveFiniteNumbers) {
     add("tiny", ball_on_grid({0, -9, 0}, 0.02, 0.004 * kOblique), 0);
     add("the same", std::make_shared<const Volume>(two_balls().volume), 0);
     add("mirrored", ball_on_grid({0, 0, 0}, 8, glm::dmat3(-1)), 0);
+    struct Way {
+        double extinction;  // of both
+        bool replaces, eye_inside;
+    };
     for (const auto& [name, volume] : beside)
-        for (const bool inside : {false, true}) {
-            SCOPED_TRACE(name);
+        for (const Way& way :
+             {Way{9, false, false}, {9, false, true}, {0.1, false, true}, {0.1, true, false}, {9, true, true}}) {
+            SCOPED_TRACE(testing::Message() << name << ", " << way.extinction << (way.replaces ? ", replaces" : ""));
             PassScene s = two_balls();
             s.scene.added = {volume};
-            s.scene.lights[0].shadows = true;
-            s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 5};
-            if (inside) s.camera.eye = {0.3, 0.2, 0.1};
+            s.scene.added[0].replaces = way.replaces;
+            s.scene.materials[1].extinction = s.scene.added[0].materials[1].extinction = way.extinction;
+            if (!way.replaces) {
+                s.scene.lights[0].shadows = true;
+                s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 5};
+            }
+            if (way.eye_inside) s.camera.eye = {0.3, 0.2, 0.1};
             for (const std::uint32_t payload : {shader::PAYLOAD_COLOR, shader::PAYLOAD_DEPTH_DISTANCE})
                 for (const glm::vec4& pixel : drawn_beside(s, payload)) {
                     ASSERT_TRUE(std::isfinite(glm::dot(pixel, pixel)));

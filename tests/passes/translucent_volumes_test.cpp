@@ -270,24 +270,6 @@ TEST(TranslucentVolumes, AbsorbAsTheirLengthsOnTheRays) {
     EXPECT_GE(psnr, 45);
 }
 
-/// A volume without matter changes no bit, whatever the others are drawn with.
-TEST(TranslucentVolumes, CostNothingIfTheyHaveNoMatter) {
-    for (PassScene s : cloud_scenes()) {
-        if (s.scene.added[0].replaces) continue;
-        SCOPED_TRACE(s.name);
-        PassScene alone = s;
-        alone.scene.added.clear();
-        for (AddedVolume& beside : s.scene.added) {
-            beside.transfer.clear();
-            beside.label_colors.clear();
-            for (Material& material : beside.materials)
-                material.extinction = 0;
-        }
-        alone.scene.clipped = s.scene.clipped = true;
-        EXPECT_TRUE(drawn_beside(s) == drawn_beside(alone));
-    }
-}
-
 /// More splats in a sheet than are prepared at once.
 TEST(TranslucentVolumes, LookTheSameBeyondThePreparedSplats) {
     PassScene s = two_clouds();
