@@ -101,34 +101,16 @@ std::vector<PassScene> cloud_scenes() {
         s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
         s.scene.ambient = 0.5;
     });
-    add("lit by highlights in fog", [](PassScene& s) {
-        s.scene.added[0].materials[1].response = {.ambient = 0.5, .diffuse = 0.7, .specular = 0.8, .shininess = 9};
-        s.scene.effects.fog = Fog{.color = {0.5, 0.5, 0.6}, .density = 0.01, .start = 30};
-        s.scene.effects.silhouette = Silhouette{.color = {0, 0, 0}, .strength = 0.6, .sharpness = 3};
-    });
     add("outlines", [](PassScene& s) {
         s.scene.effects.smooth_outlines = true;
         s.scene.materials[1].extinction = 0.6;
-    });
-    add("widened", [](PassScene& s) {
-        s.scene.effects.antialias = true;
-        s.camera.eye *= 3.0;
-    });
-    add("refined", [](PassScene& s) {
-        s.settings.pixels = PixelChoice::Refined;
-        s.camera = {.eye = {9, -24, 8}, .direction = {-6, 24, -8}, .up = {0, 0, 1}, .fov_y = 30};
     });
     add("sliced", [](PassScene& s) {
         s.settings.sheets = SheetCut::Sliced;
         s.settings.sheet_spacing = 1;
     });
-    add("from the table of footprints", [](PassScene& s) { s.settings.footprints = FootprintMode::Table; });
     add("as in the paper", [](PassScene& s) { s.settings = paper_settings(s.settings); });
     add("plain", [](PassScene& s) { s.settings.edges = EdgeEstimator::Off; });
-    add("lit at edges only", [](PassScene& s) {
-        s.scene.lit = Lit::Edges;
-        use_table(s.scene.added[0]);
-    });
     return all;
 }
 
