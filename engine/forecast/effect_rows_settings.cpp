@@ -78,7 +78,8 @@ std::size_t kernels_of(std::span<const FrameRequest> parts) {
 
 bool is_mixed(const FrameRequest& request) {
     const std::vector<FrameRequest> parts = drawn_parts(request);
-    return kernels_of(parts) > 0 && kernels_of(parts) < parts.size();
+    const std::size_t kernels = kernels_of(parts);
+    return kernels > 0 && kernels < parts.size();
 }
 
 std::size_t volumes_of(std::span<const FrameRequest> parts) {

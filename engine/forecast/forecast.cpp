@@ -172,10 +172,7 @@ Settings drawn_settings(const FrameRequest& request) {
 
 FrameRequest request_of_volume(const FrameRequest& request, std::size_t number) {
     FrameRequest one = request;
-    if (!request.scene.added.empty())
-        one.scene = scene_of_volume(request.scene, number, request.volume->geometry);
-    else
-        one.scene = scene_of_volume(request.scene, number);
+    one.scene = scene_of_volume(request.scene, number, request.volume->geometry);
     if (number > 0) one.volume = request.scene.added[number - 1].volume;
     one.number = number;
     return one;

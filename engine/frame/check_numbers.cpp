@@ -61,9 +61,8 @@ void PictureDrawer::check_picture() {
         (sound(middle) ? good : not_good) = middle;
     }
     draw_first(plan_, all);
-    std::size_t volume = 0;
-    for (; volume < plan_.together.size() && good >= plan_.together[volume].first_splat; ++volume) {
-    }
+    const auto begun = [&](const shader::VolumeParams& volume) { return volume.first_splat <= good; };
+    const auto volume = static_cast<std::size_t>(std::ranges::count_if(plan_.together, begun));
     if (volume > 0) good -= plan_.together[volume - 1].first_splat;
     fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, lists_[volume], good),
          where);

@@ -73,7 +73,7 @@ struct Sheets {
 
     /// Number of sheet 0 of the picture, counted from the eye.
     int first() const;
-    /// How far in front of sheet `number` of the picture it lies, mm from the eye.
+    /// Where sheet `number` of the picture begins, mm from the eye.
     double depth(double number) const { return thickness * (first() + number); }
     /// Those that hold the splats of both.
     Sheets with(const Sheets& other) const;

@@ -60,19 +60,14 @@ double mm_along(const View& view, std::size_t pixel) {
     return glm::length(view.geometry.index_to_world_axes * view.ray(number % view.width, number / view.width));
 }
 
-/// One of the scene's volumes alone. `first`: the scene's first volume.
-Scene drawn_alone(const Scene& scene, std::size_t number, const Volume& first) {
-    return scene.added.empty() ? scene_of_volume(scene, number) : scene_of_volume(scene, number, first.geometry);
-}
-
 }  // namespace
 
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& whole_scene, const Settings& settings, bool quantised)
-    : PreparedVolume(volume, drawn_alone((validate(whole_scene), whole_scene), 0, volume), settings, quantised,
-                     drawn_alone(whole_scene, 0, volume)) {
+    : PreparedVolume(volume, scene_of_volume((validate(whole_scene), whole_scene), 0, volume.geometry), settings,
+                     quantised, scene_of_volume(whole_scene, 0, volume.geometry)) {
     for (std::size_t i = 0; i < whole_scene.added.size(); ++i)
         added_.push_back(std::make_shared<const PreparedVolume>(
-            *whole_scene.added[i].volume, drawn_alone(whole_scene, i + 1, volume), settings, quantised));
+            *whole_scene.added[i].volume, scene_of_volume(whole_scene, i + 1, volume.geometry), settings, quantised));
     const Scene& scene = scene_;
     const auto mixture = mixture_of(settings_, scene_, volume);
     if (!mixture) return;

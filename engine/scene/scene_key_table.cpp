@@ -102,13 +102,11 @@ void add_volume(KeyTable& t) {
           {.help = "Of a volume beside the first, where others overlap it: add: the matter of both is drawn; inside: "
                    "within its grid only its own, as of a finer scan",
            .choices = {"add", "inside"}});
-    t.add(
-        "volume.rim", MEMBER(volume.rim),
-        {.unit = "mm",
-         .help = "With rule = inside: along the sides of its grid, over this length, translucent matter of the others "
-                 "gives way to its own",
-         .range = kFromZero,
-         .absent = "six voxels of the coarsest of the others"});
+    t.add("volume.rim", MEMBER(volume.rim),
+          {.unit = "mm",
+           .help = "With rule = inside: from its sides inwards, over this length, other translucent matter gives way",
+           .range = kFromZero,
+           .absent = "six voxels of the coarsest"});
     t.add("volume.checksum", MEMBER(volume.checksum),
           {.help = "Checksum of the preprocessed samples; other samples are refused", .absent = "any"});
 }

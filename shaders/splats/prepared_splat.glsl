@@ -106,8 +106,13 @@ SplatConic load_conic(uint entry) {
 // Reference point of the rays through an entry's splat: rays_beside().
 vec4 load_start(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START)); }
 
-// Reach of a surface splat's votes, or a kernel's extinction.
-float load_reach(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START + 1u)).w; }
+vec4 load_color_sigma(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START + 1u)); }
+
+// Reach of a surface splat's votes.
+float load_reach(uint entry) { return load_color_sigma(entry).w; }
+
+// Volume of a kernel, if there are several.
+uint load_volume(uint entry) { return volume_of(load_color_sigma(entry).w); }
 
 // Loads the data that draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
@@ -129,7 +134,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     vec4 v = load_start(entry);
     s.start = v.xyz;
     s.plane = v.w;
-    s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));
+    s.inputs.color_sigma = load_color_sigma(entry);
     if (SLICED == 1u) s.inputs.shape.yz = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
     if (PREPARES_CUTS) {
         vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));

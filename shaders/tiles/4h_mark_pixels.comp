@@ -79,7 +79,7 @@ void main() {
             SplatConic conic;
             if (PREPARED == 1u) conic = load_conic(entry.x);
             else conic = prepared_splat(enter_volume(UintsRef(params.frame.order).at[entry.x]), entry.y).conic;
-            if (TOGETHER == 1u && PREPARED == 1u && REFINED == 1u) volume_number = volume_of(load_reach(entry.x));
+            if (TOGETHER == 1u && PREPARED == 1u && REFINED == 1u) volume_number = load_volume(entry.x);
             if (REFINED == 1u) {
                 float depth = max(conic.depth, params.of_volume.near_depth);
                 finest = min(finest, least_voxel() / (depth * 2.0 * params.frame.tan_half_x / float(params.frame.size.x)));

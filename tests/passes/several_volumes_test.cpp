@@ -88,15 +88,7 @@ std::vector<PassScene> scenes() {
 }
 
 TEST(SeveralVolumes, LookLikeTheReferences) {
-    for (const PassScene& s : scenes()) {
-        SCOPED_TRACE(s.name);
-        const auto got = drawn_beside(s);
-        const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
-        const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y);
-        const double psnr = decibels_beside(got, want.pixels, 4, 1);
-        std::printf("%-20s %.1f dB\n", s.name.c_str(), psnr);
-        EXPECT_GE(psnr, 55);
-    }
+    expect_references(scenes());
 }
 
 TEST(SeveralVolumes, HaveTheReferencesOutputs) {
@@ -146,14 +138,7 @@ TEST(SeveralVolumes, AreExactForUnlitBalls) {
 }
 
 TEST(SeveralVolumes, DoNotDependOnTheirOrder) {
-    for (const PassScene& s : scenes()) {
-        const AddedVolume& beside = s.scene.added[0];
-        if (s.scene.added.size() != 1 || !beside.clipped || beside.replaces) continue;
-        SCOPED_TRACE(s.name);
-        PassScene other = s;
-        other.scene = exchanged(s, other.volume);
-        EXPECT_TRUE(drawn_beside(s) == drawn_beside(other));
-    }
+    expect_no_order(scenes());
 }
 
 /// The same object twice, on different grids, is the object once.

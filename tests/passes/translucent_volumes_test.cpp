@@ -115,26 +115,11 @@ std::vector<PassScene> cloud_scenes() {
 }
 
 TEST(TranslucentVolumes, LookLikeTheReferences) {
-    for (const PassScene& s : cloud_scenes()) {
-        SCOPED_TRACE(s.name);
-        const auto got = drawn_beside(s);
-        const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
-        const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y);
-        const double psnr = decibels_beside(got, want.pixels, 4, 1);
-        std::printf("%-28s %.1f dB\n", s.name.c_str(), psnr);
-        EXPECT_GE(psnr, 55);
-    }
+    expect_references(cloud_scenes());
 }
 
 TEST(TranslucentVolumes, DoNotDependOnTheirOrder) {
-    for (const PassScene& s : cloud_scenes()) {
-        const AddedVolume& beside = s.scene.added[0];
-        if (s.scene.added.size() != 1 || !beside.clipped || beside.replaces) continue;
-        SCOPED_TRACE(s.name);
-        PassScene other = s;
-        other.scene = exchanged(s, other.volume);
-        EXPECT_TRUE(drawn_beside(s) == drawn_beside(other));
-    }
+    expect_no_order(cloud_scenes());
 }
 
 /// Half of the matter twice is the matter once.

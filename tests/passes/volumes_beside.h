@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
+#include "engine/reference/reference_renderer.h"
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {
@@ -100,6 +102,31 @@ inline Scene exchanged(const PassScene& s, Volume& first) {
     scene.transfer = was.transfer;
     first = *was.volume;
     return scene;
+}
+
+/// The pictures are those of the reference.
+inline void expect_references(const std::vector<PassScene>& scenes) {
+    for (const PassScene& s : scenes) {
+        SCOPED_TRACE(s.name);
+        const auto got = drawn_beside(s);
+        const reference::PreparedVolume reference(s.volume, s.scene, s.settings, true);
+        const Image want = reference.render(s.camera, kBesideSize.x, kBesideSize.y);
+        const double psnr = decibels_beside(got, want.pixels, 4, 1);
+        std::printf("%-28s %.1f dB\n", s.name.c_str(), psnr);
+        EXPECT_GE(psnr, 55);
+    }
+}
+
+/// The pictures of two volumes do not change if the scene lists them the other way round.
+inline void expect_no_order(const std::vector<PassScene>& scenes) {
+    for (const PassScene& s : scenes) {
+        const AddedVolume& beside = s.scene.added[0];
+        if (s.scene.added.size() != 1 || !beside.clipped || beside.replaces) continue;
+        SCOPED_TRACE(s.name);
+        PassScene other = s;
+        other.scene = exchanged(s, other.volume);
+        EXPECT_TRUE(drawn_beside(s) == drawn_beside(other));
+    }
 }
 
 /// The same of all pixels, between two pictures.
