@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/scene/default_materials.h"
 #include "engine/scene/label_choice.h"
+#include "engine/scene/label_fade.h"
 #include "engine/volume/labels.h"
 
 namespace {
@@ -77,6 +78,13 @@ void own_colors(AppState& state) {
     });
 }
 
+/// The opacity of a label; the other labels' own is 1.
+void faded(AppState& state, const std::string& number) {
+    const double now = edgesplat::opacity_of_labels(state.session.document(), number);
+    slide(state, "##opacity", now, {0.05, 1, "%.2f"},
+          [&](SceneDocument& d, double opacity) { edgesplat::fade_labels(d, number, opacity); });
+}
+
 }  // namespace
 
 void labels_panel(AppState& state) {
@@ -132,16 +140,20 @@ void labels_panel(AppState& state) {
             const edgesplat::Label& label = table->labels[place];
             const std::string number = table->number_of(label);
             ImGui::PushID(number.c_str());
-            bool on = shown[place];
+            bool on = shown[place] || edgesplat::opacity_of_labels(state.session.document(), number) < 1;
             const bool clicked = ImGui::Checkbox("##on", &on);
             note(state, number.c_str());
             ImGui::SameLine();
             const unsigned swatch = painted(place < colors.size() ? colors[place] : glm::dvec3(0));
             ImGui::ColorButton("##colour", ImGui::ColorConvertU32ToFloat4(swatch), ImGuiColorEditFlags_NoTooltip);
             ImGui::SameLine();
+            ImGui::SetNextItemWidth(4 * static_cast<float>(state.em));
+            faded(state, number);
+            ImGui::SameLine();
             ImGui::TextUnformatted(text_of(*table, label).c_str());
             ImGui::PopID();
             if (!clicked) continue;
+            state.session.edit([&](SceneDocument& d) { edgesplat::fade_labels(d, number, 1); });
             std::vector<bool> next = shown;
             next[place] = on;
             show_labels(state, *table, next, alone);

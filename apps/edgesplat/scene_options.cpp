@@ -4,6 +4,7 @@
 
 #include "apps/edgesplat/option_values.h"
 #include "engine/error.h"
+#include "engine/scene/label_fade.h"
 #include "engine/scene/ladder.h"
 #include "engine/scene/scene_presets.h"
 
@@ -181,6 +182,25 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
         [](SceneDocument & d) -> auto& { return d.volume.only; });
     add_labels(
         "--hide", "Labels to hide, in the same way", [](SceneDocument & d) -> auto& { return d.volume.hide; });
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--fade",
+            [&edits](const std::vector<std::string>& entries) {
+                for (const std::string& entry : entries) {
+                    const std::size_t end = entry.rfind('=');
+                    if (end == 0 || end == std::string::npos)
+                        throw CLI::ValidationError("--fade", fmt::format("'{}': expected LABEL=OPACITY", entry));
+                    const double opacity =
+                        read_number("--fade", entry.substr(end + 1), {.low = 0, .high = 1, .above_low = true});
+                    edits.add([labels = entry.substr(0, end), opacity](SceneDocument& d) {
+                        edgesplat::fade_labels(d, labels, opacity);
+                    });
+                }
+            },
+            "Draw labels translucent, in the mean with this opacity: by number, name, or name with *. Repeatable")
+        ->type_name("LABEL=OPACITY")
+        ->allow_extra_args(false)
+        ->group(kGroup);
 }
 
 void add_settings_options(CLI::App& command, DocumentEdits& edits) {

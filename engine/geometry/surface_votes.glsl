@@ -113,7 +113,6 @@ SurfaceVote vote_of_deep(Real enters, vec3 n, Real ahead, bool seen) {
 // What a surface shows where a splat votes that the ray enters it.
 struct Shown {
     uint number;   // of the splat
-    uint kind;     // its label
     Real arrives;  // share of ambient light
     vec2 lights;   // shares of the two lights with shadows
 };
@@ -127,9 +126,8 @@ struct SurfaceVotes {
     vec3 normal;  // likewise, of unit normals
     Real arrives; // likewise, of the share of ambient light that arrives
     vec2 lights;  // likewise, of the shares of the lights with shadows
-    uint number;  // the splat with the largest weight of a hit; with labels, the first of the seen label
-    uint kind;
-    Real largest;  // that weight; with labels, how far theirs exceeds all others'
+    uint number;  // the splat with the largest weight of a hit
+    Real largest;  // that weight
 };
 
 SurfaceVotes no_votes() {
@@ -142,7 +140,6 @@ SurfaceVotes no_votes() {
     votes.arrives = 0.0;
     votes.lights = vec2(0.0);
     votes.number = 0u;
-    votes.kind = 0u;
     votes.largest = 0.0;
     return votes;
 }
@@ -215,8 +212,8 @@ Real chord_in_body(Real value, Real slope, Real lower, Real upper) {
 }
 
 // Counts a vote at the distance `way` from the eye. Votes are about one surface if they lie within SURFACE_WINDOW of
-// its hits' mean. `labelled`: the label of most weight is seen (Boyer and Moore 1991, "MJRTY"), not the nearest splat's.
-void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown, bool labelled) {
+// its hits' mean.
+void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown) {
     bool votes = vote.weight > 0.0 && way > 0.0;
     bool hit = votes && vote.enters;
     bool miss = votes && !vote.enters;
@@ -253,12 +250,8 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     to.arrives += weight * shown.arrives;
     to.lights += weight * shown.lights;
     if (hit) to.normal += w / max(length(vote.n), 1e-12) * vote.n;
-    bool agrees = labelled && to.largest > 0.0 && shown.kind == to.kind;
-    bool takes = !agrees && weight > to.largest;
-    if (takes) to.number = shown.number;
-    if (takes) to.kind = shown.kind;
-    if (labelled) to.largest = abs(agrees ? to.largest + weight : to.largest - weight);
-    if (takes && !labelled) to.largest = weight;
+    if (weight > to.largest) to.number = shown.number;
+    to.largest = max(to.largest, weight);
     if (of_front) pair.front = to;
     if (of_behind) pair.behind = to;
 }

@@ -135,7 +135,7 @@ const std::array kSplatLists{
     row<SplatListRow>(text("classified values", "(splats) float", "2", "5"), &L::values, &S::values, &P::values,
                       [](const CollectionPlan& p) { return p.transfer.empty() ? 0 : kWord; }),
     row<SplatListRow>(text("splat labels", "(splats) uint", "2", "5"), &L::labels, &S::labels, &P::labels,
-                      [](const CollectionPlan& p) { return p.labels != 0 ? kWord : 0; }),
+                      [](const CollectionPlan& p) { return p.labels != 0 && !p.surfaces ? kWord : 0; }),
 };
 
 const std::array kLightLists{

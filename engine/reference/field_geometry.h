@@ -5,6 +5,7 @@
 
 #include "engine/geometry/in_double.h"
 #include "engine/reference/1_estimate_edges.h"
+#include "engine/volume/labels.h"
 
 namespace edgesplat::geometry {
 // Like in_double.h: each source file has its own.
@@ -87,6 +88,10 @@ struct FieldGeometry {
         const reference::VoxelEdge& edge = edges_[field_.offset(p)];
         return {geometry::edge_of(edge).state, std::abs(edge.D), edge.border, &edge};
     }
+    uint label_number(ivec3 p) const { return label_near(*scene_.labels, dims, p); }
+    bool label_votes(ivec3 p, uint material) const {
+        return scene_.labels->on_scan ? material_at(p) == material : scene_.labels->at[field_.offset(p)] > 0;
+    }
     static Edge edge_of(const StoredEdge& stored) { return geometry::edge_of(*stored.edge); }
 
 #define INOUT(type) type&
@@ -96,6 +101,7 @@ struct FieldGeometry {
 #include "engine/geometry/classified_value.glsl"
 #include "engine/geometry/ends_beside.glsl"
 #include "engine/geometry/find_edge.glsl"
+#include "engine/geometry/seen_label.glsl"
 #include "engine/geometry/surfel.glsl"
 // After what it uses.
 #include "engine/geometry/fit_face.glsl"

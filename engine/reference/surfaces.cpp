@@ -358,11 +358,6 @@ SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& 
     for (const SplatRecord& record : records)
         splats.push_back(drawn_splat(record, field, view, thickness, before));
     const double solid = solid_chord(scene, view.geometry);
-    std::vector<std::uint32_t> labels(records.size(), 0);
-    if (surfaces.materials.labels)
-        std::ranges::transform(records, labels.begin(), [&](const SplatRecord& record) {
-            return label_near(*surfaces.materials.labels, field.dims, field.voxel(record.voxel));
-        });
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return splats[i].sheet; });
@@ -370,17 +365,17 @@ SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& 
     const double reach = before * glm::length(view_z);
     const std::vector<std::size_t> shadowing = shadow_lights(scene);
     const bool smooth = payload == Payload::Color && smooths_outlines(settings, scene);
+    geometry::FieldGeometry samples(field, surfaces.materials);
     const auto seen_by = [&](const geometry::SurfaceVotes& votes, const dvec3& at) {
         Seen seen;
         if (votes.number < shader::BEGUN_MATTER) {
             const SplatRecord& record = records[votes.number];
-            seen = {record.color(scene), record.material, -record.edge.D, {}};
+            seen = {{}, record.material, -record.edge.D, {}};
         } else {
             seen.material = votes.number - shader::BEGUN_MATTER;
-            const std::size_t voxel = field.offset(field.clamped(ivec3(glm::round(at))));
-            const auto label = labelled(field, surfaces.materials, scene, voxel, static_cast<int>(seen.material));
-            seen.color = label ? label->color : scene.materials[seen.material].color;
         }
+        const std::uint32_t label = surfaces.materials.labels ? samples.seen_label(at, seen.material) : 0;
+        seen.color = label > 0 ? scene.label_colors[label - 1] : scene.materials[seen.material].color;
         seen.reach.ambient = geometry::arrives_at(votes);
         for (std::size_t k = 0; k < shadowing.size(); ++k)
             seen.reach.lights[shadowing[k]] = geometry::lights_at(votes)[static_cast<int>(k)];
@@ -456,9 +451,7 @@ SurfacePicture draw_surfaces(std::span<const SplatRecord> records, const Field& 
                     glm::dvec2 lights(1);
                     for (std::size_t k = 0; k < shadowing.size(); ++k)
                         lights[static_cast<int>(k)] = s.record->reach.lights[shadowing[k]];
-                    geometry::count_vote(pixel.pair, vote, way,
-                                         {number, labels[number], s.record->reach.ambient, lights},
-                                         surfaces.materials.labels != nullptr);
+                    geometry::count_vote(pixel.pair, vote, way, {number, s.record->reach.ambient, lights});
                 }
         }
         for (int y = begin; y < end; ++y)

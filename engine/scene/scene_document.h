@@ -42,6 +42,8 @@ struct VolumeSource {
     std::vector<double> transform;  ///< 4 x 4, row by row: moves the volume in the world; empty: not moved
     bool visible = true;            ///< whether its matter is drawn
     bool clip = true;               ///< whether the scene's clip planes cut it
+    /// Share of a ray that the matter takes in the mean of its chords (mean_chord), (0, 1]; instead of extinctions
+    std::optional<double> opacity;
     VolumeRule rule = VolumeRule::Add;
     double rim = 0;        ///< mm, of VolumeRule::Inside (AddedVolume::rim)
     std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
@@ -191,6 +193,9 @@ using LoadProgress = std::function<void(double fraction, std::string_view what)>
 /// Whether labels are chosen (`only`, `hide`).
 bool chooses_labels(const VolumeSource& source);
 
+/// What decides the samples that read_source reads, and where they lie.
+VolumeSource reading_part(const VolumeSource& source);
+
 /// Finds and reads the volume, with its segmentation and the names of its labels, without preprocessing. Throws Error.
 Volume read_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
                    const LoadProgress& progress = {});
@@ -211,10 +216,11 @@ Volume prepared_volume(SceneDocument& document, Volume volume);
 /// If the document leaves its iso-values to statistics of the volume, makes those for this volume the document's.
 void set_open_iso_values(SceneDocument& document, const Volume& volume);
 
-/// Reads and preprocesses the volumes beside the first one that are not read yet, or whose source has changed. Throws
-/// Error naming the volume.
+/// Reads and preprocesses the volumes beside the first one that are not read yet, or whose source has changed. `first`:
+/// what read_source gave for the first one; those with the same reading_part are not read again. Throws Error naming
+/// the volume.
 void read_volumes(SceneDocument& document, const std::vector<std::filesystem::path>& folders,
-                  const LoadProgress& progress = {});
+                  const LoadProgress& progress = {}, const Volume* first = nullptr);
 
 /// Names the labels of a volume from a file (read_label_names). Throws Error if it is no segmentation.
 void name_labels(Volume& volume, const std::filesystem::path& path);

@@ -14,6 +14,7 @@ namespace {
 constexpr KeyRange kShare{0, 1};
 constexpr KeyRange kFromZero{.low = 0};
 constexpr KeyRange kAboveZero{.low = 0, .above_low = true};
+constexpr KeyRange kOpacity{.low = 0, .high = 1, .above_low = true};
 
 // An access function of a member, for const and non-const documents.
 #define MEMBER(expression) ([](auto& d, [[maybe_unused]] std::size_t i) -> auto& { return d.expression; })
@@ -98,6 +99,10 @@ void add_volume(KeyTable& t) {
            .absent = "the file's place"});
     t.add("volume.visible", MEMBER(volume.visible), {.help = "Draw the volume's matter"});
     t.add("volume.clip", MEMBER(volume.clip), {.help = "Clip planes cut the volume"});
+    t.add("volume.opacity", MEMBER(volume.opacity),
+          {.help = "Share of a ray that the matter takes, in the mean of all rays through it; instead of extinctions",
+           .range = kOpacity,
+           .absent = "the materials' extinctions"});
     t.add("volume.rule", MEMBER(volume.rule),
           {.help = "Of a volume beside the first, where others overlap it: add: the matter of both is drawn; inside: "
                    "within its grid only its own, as of a finer scan",

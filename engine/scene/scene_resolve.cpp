@@ -10,6 +10,7 @@
 #include "engine/scene/scene_presets.h"
 #include "engine/scene/views.h"
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/chord.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
@@ -194,6 +195,21 @@ void write_out_materials(SceneDocument& document, const Scene& scene, const Volu
 
 namespace {
 
+/// Gives all matter the extinction of volume.opacity.
+void set_opacity(Scene& scene, const SceneDocument& document, const Volume& volume) {
+    if (!scene.transfer.empty())
+        fail("volume.opacity: the transfer function has extinctions of its own; expected one of them");
+    for (std::size_t m = 0; m < document.materials.size(); ++m)
+        if (document.materials[m].extinction)
+            fail("volume.opacity: materials[{}] has an extinction of its own; expected one of them", m);
+    if (volume.packed) fail("volume.opacity: {} is packed; expected materials[].extinction", volume.name);
+    const double chord = mean_chord(volume, scene.iso_values.front()), opacity = *document.volume.opacity;
+    const double extinction =
+        opacity < 1 && chord > 0 ? -std::log1p(-opacity) / chord : default_extinction(true, volume.geometry);
+    for (std::size_t m = 1; m < scene.materials.size(); ++m)
+        scene.materials[m].extinction = extinction;
+}
+
 /// The scene of a document's first volume. `number`: of the volume; each has other default colours.
 Scene resolved_alone(const SceneDocument& document, const Volume& volume, std::size_t number) {
     Scene scene;
@@ -240,6 +256,7 @@ Scene resolved_alone(const SceneDocument& document, const Volume& volume, std::s
         scene.materials.push_back(document.materials.empty() ? usual
                                                              : material_of(document.materials[order[rank]], usual));
     }
+    if (document.volume.opacity) set_opacity(scene, document, volume);
     scene.ambient = document.ambient;
     scene.lights = document.lights;
     scene.lit = document.lit;

@@ -89,6 +89,23 @@ void move(VolumeGeometry& geometry, const glm::dmat4& matrix) {
 
 }  // namespace
 
+VolumeSource reading_part(const VolumeSource& source) {
+    VolumeSource part;
+    part.path = source.path;
+    part.raw = source.raw;
+    part.series = source.series;
+    part.component = source.component;
+    part.frame = source.frame;
+    part.level = source.level;
+    part.resample = source.resample;
+    part.spacing = source.spacing;
+    part.no_data = source.no_data;
+    part.segmentation = source.segmentation;
+    part.label_names = source.label_names;
+    part.registration = source.registration;
+    return part;
+}
+
 Volume read_source(const VolumeSource& source, const std::vector<fs::path>& folders, const LoadProgress& progress) {
     LoadOptions options;
     options.component = source.component;
@@ -130,15 +147,25 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
 }
 
 Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
-    Volume volume = prepared_volume(document, read_source(document.volume, folders, progress));
-    read_volumes(document, folders, progress);
+    Volume samples = read_source(document.volume, folders, progress);
+    const VolumeSource reading = reading_part(document.volume);
+    const auto reads_them = [&](const SceneDocument& entry) { return reading_part(entry.volume) == reading; };
+    if (std::ranges::none_of(document.volumes, reads_them)) {
+        Volume volume = prepared_volume(document, std::move(samples));
+        read_volumes(document, folders, progress);
+        return volume;
+    }
+    Volume volume = prepared_volume(document, samples);
+    read_volumes(document, folders, progress, &samples);
     return volume;
 }
 
-void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
+void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress,
+                  const Volume* first) {
     const auto what_is_read = [](const SceneDocument& entry) {
         VolumeSource source = entry.volume;
         source.visible = source.clip = true;
+        source.opacity.reset();
         source.rule = VolumeRule::Add;
         source.rim = 0;
         return std::pair(source, entry.iso_values);
@@ -147,7 +174,8 @@ void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders,
         SceneDocument& entry = document.volumes[i];
         if (entry.read && std::pair(entry.read->source, entry.read->iso_values) == what_is_read(entry)) continue;
         try {
-            Volume volume = prepared_volume(entry, read_source(entry.volume, folders, progress));
+            const bool is_read = first && reading_part(entry.volume) == reading_part(document.volume);
+            Volume volume = prepared_volume(entry, is_read ? *first : read_source(entry.volume, folders, progress));
             const auto [source, iso_values] = what_is_read(entry);
             entry.read = std::make_shared<const ReadVolume>(
                 ReadVolume{source, iso_values, std::make_shared<const Volume>(std::move(volume))});
@@ -157,10 +185,20 @@ void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders,
     }
 }
 
+namespace {
+
+/// The scene of a document's own volume, while others may not be read yet.
+Scene scene_of_first(SceneDocument document, const Volume& volume) {
+    document.volumes.clear();
+    return resolve_scene(document, volume);
+}
+
+}  // namespace
+
 void set_open_iso_values(SceneDocument& document, const Volume& volume) {
     const bool of_presets = document.iso_sigmas.empty() && document.materials.size() > 1;
     if (!document.iso_values.empty() || of_presets) return;
-    document.iso_values = resolve_scene(document, volume).iso_values;
+    document.iso_values = scene_of_first(document, volume).iso_values;
     for (double& value : document.iso_values)
         value = volume.in_file_unit(value);
     document.iso_sigmas.clear();
@@ -170,7 +208,7 @@ namespace {
 
 /// The lowest value of visible matter, in the samples' unit.
 double lowest_matter(const SceneDocument& document, const Volume& volume) {
-    const Scene scene = resolve_scene(document, volume);
+    const Scene scene = scene_of_first(document, volume);
     std::size_t lowest = 0;
     while (lowest + 1 < scene.iso_values.size() && !(scene.materials[lowest + 1].extinction > 0))
         ++lowest;

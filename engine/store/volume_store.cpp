@@ -80,9 +80,12 @@ bool VolumeStore::provide_coefficients() {
 
 bool VolumeStore::provide_labels() {
     if (images_.labels) return false;
-    make(&VolumeImages::labels, volume_->geometry.dims);
-    upload_image(session_->commands(), session_->device(), images_.labels, volume_->shown_labels->at.data(),
-                 sizeof(std::uint32_t));
+    const glm::ivec3 dims = volume_->geometry.dims;
+    make(&VolumeImages::labels, dims);
+    const ShownLabels& shown = *volume_->shown_labels;
+    const auto of_scan = shown.on_scan ? drawn_numbers(shown, dims, glm::ivec3(0), dims) : std::vector<std::uint32_t>();
+    upload_image(session_->commands(), session_->device(), images_.labels,
+                 shown.on_scan ? of_scan.data() : shown.at.data(), sizeof(std::uint32_t));
     return true;
 }
 
@@ -105,7 +108,7 @@ void VolumeStore::load(const CollectionBlock& block, std::span<const float> samp
     upload(images_.volume, samples.data());
     if (images_.labels)
         upload(images_.labels,
-               labels_in_box(volume_->shown_labels->at, volume_->geometry.dims, block.low, block.size).data());
+               drawn_numbers(*volume_->shown_labels, volume_->geometry.dims, block.low, block.size).data());
     if (!images_.coefficients) return;
     upload(images_.coefficients, bspline_coefficients({samples.begin(), samples.end()}, block.size).data());
 }

@@ -117,7 +117,7 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
         change(document);
         validate(document.quality.settings);
         volume = relabelled(document);
-        read_volumes(document, opened_.folders);
+        read_volumes(document, opened_.folders, {}, opened_.samples.get());
         scene = resolve_scene(document, volume ? *volume : *opened_.volume);
     } catch (const Error& error) {
         message_ = error.what();

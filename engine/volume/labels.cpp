@@ -10,8 +10,8 @@
 
 #include "engine/error.h"
 #include "engine/volume/grid.h"
-#include "engine/volume/lines_internal.h"
 #include "engine/volume/parallel.h"
+#include "engine/volume/smooth_labels.h"
 
 namespace edgesplat {
 namespace {
@@ -23,9 +23,6 @@ constexpr std::size_t kManyLabels = 256;
 // Of many labels: least share of voxels whose next voxel along x has the same label, and least mean difference of the
 // others' ranks, relative to the number of labels.
 constexpr double kLeastAlike = 0.5, kLeastApart = 0.03;
-// Least distance of a drawn label's samples from the iso-value, on their own side; and of parts one voxel thick, so
-// that they remain that thick.
-constexpr float kLabelSide = 0.05F, kThinLabelSide = 0.2F;
 // Largest magnitude of a whole number that is a label: floats represent smaller ones exactly.
 constexpr float kLargestNumber = 16777216.0F;
 
@@ -159,87 +156,6 @@ std::size_t background_label(const Volume& volume, const LabelTable& table) {
     return static_cast<std::size_t>(std::ranges::max_element(count) - count.begin());
 }
 
-namespace {
-
-/// The mean with weights 1, 2, 1 along each line; the outermost samples are repeated.
-void blur_lines(const detail::Lines& lines) {
-    std::vector<float> before(lines.samples, lines.samples + lines.count), here = before;
-    for (std::size_t i = 0; i < lines.length; ++i) {
-        float* const at = lines.sample(i);
-        const float* const behind = lines.sample(std::min(i + 1, lines.length - 1));
-        std::copy_n(at, lines.count, here.begin());
-        for (std::size_t k = 0; k < lines.count; ++k)
-            at[k] = 0.25F * (before[k] + behind[k]) + 0.5F * here[k];
-        before.swap(here);
-    }
-}
-
-/// Removes the stairs of whole voxels; shrinks what is larger than they are less than an average does.
-void smooth(std::vector<float>& mask, const glm::ivec3& dims) {
-    const auto twice = [&](std::vector<float>& field) {
-        for (int pass = 0; pass < 6; ++pass)
-            detail::along_axis(field, dims, pass % 3, blur_lines);
-    };
-    twice(mask);
-    std::vector<float> again = mask;
-    twice(again);
-    for (std::size_t i = 0; i < mask.size(); ++i)
-        mask[i] = 2 * mask[i] - again[i];
-}
-
-/// Whether a voxel is in a cube of 2 x 2 x 2 voxels on its side of the mask.
-bool is_thick(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
-    const bool shown = labels[voxel_offset(dims, p)] > 0;
-    const auto in_cube = [&](const glm::ivec3& way) {
-        for (int i = 1; i < 8; ++i) {
-            const glm::ivec3 there = p + way * glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
-            if ((labels[voxel_offset(dims, glm::clamp(there, glm::ivec3(0), dims - 1))] > 0) != shown) return false;
-        }
-        return true;
-    };
-    for (int i = 0; i < 8; ++i)
-        if (in_cube(2 * glm::ivec3(i & 1, i >> 1 & 1, i >> 2) - 1)) return true;
-    return false;
-}
-
-/// Whether a voxel belongs to a sheet, a strand or a speck: neither it nor a neighbour on its side is thick.
-bool is_thin(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
-    if (is_thick(labels, dims, p)) return false;
-    const bool shown = labels[voxel_offset(dims, p)] > 0;
-    for (int i = 0; i < 6; ++i) {
-        glm::ivec3 beside = p;
-        beside[i >> 1] = std::clamp(p[i >> 1] + 2 * (i & 1) - 1, 0, dims[i >> 1] - 1);
-        if ((labels[voxel_offset(dims, beside)] > 0) == shown && is_thick(labels, dims, beside)) return false;
-    }
-    return true;
-}
-
-/// Moves each sample of the smoothed mask to the side of the iso-value on which its voxel is.
-void keep_sides(std::vector<float>& mask, const std::vector<std::uint32_t>& labels, const glm::ivec3& dims) {
-    parallel_for(dims.z, [&](int begin, int end) {
-        for (int z = begin; z < end; ++z)
-            for (int y = 0; y < dims.y; ++y)
-                for (int x = 0; x < dims.x; ++x) {
-                    const glm::ivec3 p(x, y, z);
-                    const std::size_t at = voxel_offset(dims, p);
-                    const float way = labels[at] > 0 ? 1.0F : -1.0F, within = way * (mask[at] - 0.5F);
-                    if (within >= kThinLabelSide) continue;
-                    const float side = is_thin(labels, dims, p) ? kThinLabelSide : kLabelSide;
-                    mask[at] = 0.5F + way * std::max(within, side);
-                }
-    });
-}
-
-}  // namespace
-
-std::vector<float> smoothed_mask(const std::vector<std::uint32_t>& numbers, const glm::ivec3& dims) {
-    std::vector<float> mask(numbers.size());
-    std::ranges::transform(numbers, mask.begin(), [](std::uint32_t number) { return number > 0 ? 1.0F : 0.0F; });
-    smooth(mask, dims);
-    keep_sides(mask, numbers, dims);
-    return mask;
-}
-
 Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown) {
     Volume result = volume;
     std::vector<std::uint32_t> labels(volume.values.size());
@@ -300,6 +216,31 @@ std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& label
     return part;
 }
 
+std::vector<std::uint32_t> drawn_numbers(const ShownLabels& labels, const glm::ivec3& dims, const glm::ivec3& low,
+                                         const glm::ivec3& size) {
+    std::vector<std::uint32_t> numbers = labels_in_box(labels.at, dims, low, size);
+    if (!labels.on_scan) return numbers;
+    std::vector<char> has_labels;  // per line along x of the volume
+    for (auto row = labels.at.begin(); row != labels.at.end(); row += dims.x)
+        has_labels.push_back(std::any_of(row, row + dims.x, [](std::uint32_t number) { return number > 0; }) ? 1 : 0);
+    const auto is_near = [&](const glm::ivec3& p) {
+        for (int i = 0; i < 9; ++i) {
+            const glm::ivec3 row = glm::clamp(p + glm::ivec3(0, i % 3 - 1, i / 3 - 1), glm::ivec3(0), dims - 1);
+            if (has_labels[static_cast<std::size_t>(row.y + dims.y * row.z)] != 0) return true;
+        }
+        return false;
+    };
+    parallel_for(size.z, [&](int begin, int end) {
+        for (int z = begin; z < end; ++z)
+            for (int y = 0; y < size.y; ++y) {
+                if (!is_near(low + glm::ivec3(0, y, z))) continue;
+                for (int x = 0; x < size.x; ++x)
+                    numbers[voxel_offset(size, {x, y, z})] = label_near(labels, dims, low + glm::ivec3(x, y, z));
+            }
+    });
+    return numbers;
+}
+
 std::vector<std::uint32_t> halved_labels(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims) {
     const glm::ivec3 half = (dims + 1) / 2;
     std::vector<std::uint32_t> out;
@@ -328,9 +269,11 @@ std::uint32_t label_near(const ShownLabels& labels, const glm::ivec3& dims, cons
     const auto at = [&](const glm::ivec3& i) { return labels.at[voxel_offset(dims, i)]; };
     std::uint32_t label = at(p);
     if (label > 0) return label;
-    int nearest = labels.on_scan ? 4 : 13;  // squares of voxels
-    for (int i = 0; i < 125; ++i) {
-        const glm::ivec3 there = glm::clamp(p + glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2, glm::ivec3(0), dims - 1);
+    const int reach = labels.on_scan ? 1 : 2, side = 2 * reach + 1;
+    int nearest = 3 * reach * reach + 1;  // squares of voxels
+    for (int i = 0; i < side * side * side; ++i) {
+        const glm::ivec3 to(i % side, i / side % side, i / side / side);
+        const glm::ivec3 there = glm::clamp(p + to - reach, glm::ivec3(0), dims - 1);
         const glm::ivec3 way = there - p;
         const int distance = way.x * way.x + way.y * way.y + way.z * way.z;
         if (at(there) == 0 || distance >= nearest) continue;

@@ -30,10 +30,6 @@ std::size_t place_of_label(const LabelTable& table, float sample);
 /// there. With a segmentation of its own (segmentation.h) a volume has none: then the number of labels.
 std::size_t background_label(const Volume& volume, const LabelTable& table);
 
-/// 1 where a number is above 0, else 0, averaged so that the surface at 0.5 has no stairs of voxels; each voxel stays
-/// on its own side of it (docs/method/shading.md, Labels).
-std::vector<float> smoothed_mask(const std::vector<std::uint32_t>& numbers, const glm::ivec3& dims);
-
 /// The volume that is drawn for a segmentation, with `labels` = `table` and `shown_labels`: the mask of the voxels that
 /// have a shown label, smoothed (smoothed_mask). `shown`: per place in the table. Samples without data show nothing.
 /// Throws Error if no voxel has a shown label.
@@ -56,6 +52,10 @@ std::uint32_t label_at(const Volume& volume, const glm::dvec3& place);
 /// Numbers in a box of the volume: `size` voxels from `low` on, x fastest.
 std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims,
                                          const glm::ivec3& low, const glm::ivec3& size);
+
+/// The same numbers as they are drawn: in a scan, those of label_near.
+std::vector<std::uint32_t> drawn_numbers(const ShownLabels& labels, const glm::ivec3& dims, const glm::ivec3& low,
+                                         const glm::ivec3& size);
 
 /// Numbers in the volume with voxels of 2 x 2 x 2: the most frequent label in each, the lowest of several; 0 if
 /// there is none.

@@ -8,12 +8,13 @@
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 #include "engine/volume/parallel.h"
+#include "engine/volume/smooth_labels.h"
 
 namespace edgesplat {
 namespace {
 
-// Share of the smoothed mask's range over which matter fades on the inner side of a cut: about half a voxel.
-constexpr double kFade = 0.25;
+// Voxels over which matter fades on the inner side of a cut.
+constexpr double kFade = 0.5;
 
 /// The labels without the background, and the number of each of the segmentation's places among them; 0: none.
 struct Numbering {
@@ -157,14 +158,14 @@ Volume with_labels_shown(const Volume& scan, const std::vector<bool>& shown, boo
         fail("{}: volume.only, volume.hide (--only, --hide): the labels that are left have no value above {:g}",
              scan.name, scan.in_file_unit(iso));
     const double contrast = sum / static_cast<double>(count);
-    const std::vector<float> mask = smoothed_mask(kept, dims);
+    const std::vector<float> depth = depth_in_labels(kept, dims);
     Volume result = scan;
     std::vector<std::uint32_t> numbers(kept.size());
     for_voxels(dims, [&](std::size_t at, const glm::ivec3&) {
         const std::uint32_t number = scan.shown_labels->at[at];
         numbers[at] = number > 0 && shown[number - 1] ? number : 0;
         // Above 0 where matter stays: 1 in it, 0 where it is cut.
-        const double inside = std::clamp((static_cast<double>(mask[at]) - 0.5) / kFade, -1.0, 1.0);
+        const double inside = std::clamp(static_cast<double>(depth[at]) / kFade, -1.0, 1.0);
         const double above = static_cast<double>(scan.values[at]) - iso;
         const double matter = above > 0 ? above * std::max(inside, 0.0) : above;
         result.values[at] = static_cast<float>(iso + matter + contrast * std::min(inside, 0.0));

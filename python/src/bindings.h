@@ -38,9 +38,6 @@ struct SharedVolume {
     std::shared_ptr<LatestVersion> latest = std::make_shared<LatestVersion>();
 };
 
-/// The part of `source` that says how the volume is read, without preprocessing.
-VolumeSource reading_part(const VolumeSource& source);
-
 /// Finds and reads a volume. Keeps the interpreter's lock: output that another thread prints meanwhile would be taken
 /// for messages of the image libraries.
 SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders);

@@ -80,7 +80,8 @@ Document read(const std::string& path) {
 /// open iso-values of the scene become those of the whole scan.
 SharedVolume prepared(Document& self, const SharedVolume& given) {
     const py::gil_scoped_release release;
-    read_volumes(self.scene, self.folders);
+    const bool same = reading_part(self.scene.volume) == given.source;
+    read_volumes(self.scene, self.folders, {}, same ? given.volume.get() : nullptr);
     if (given.volume->has_segmentation() && chooses_labels(self.scene.volume))
         set_open_iso_values(self.scene, *given.volume);
     SceneDocument scene = self.scene;

@@ -193,22 +193,6 @@ std::vector<std::tuple<py::object, std::string, std::size_t, Numbers, std::optio
 
 }  // namespace
 
-VolumeSource reading_part(const VolumeSource& source) {
-    VolumeSource part;
-    part.path = source.path;
-    part.raw = source.raw;
-    part.series = source.series;
-    part.component = source.component;
-    part.frame = source.frame;
-    part.level = source.level;
-    part.spacing = source.spacing;
-    part.no_data = source.no_data;
-    part.segmentation = source.segmentation;
-    part.label_names = source.label_names;
-    part.registration = source.registration;
-    return part;
-}
-
 SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders) {
     source.path = find_volume(source.path, folders);
     std::vector<std::filesystem::path> searched{{}};

@@ -4,12 +4,13 @@
 layout(constant_id = SPEC_LABELS) const uint LABELS = 0u;
 layout(binding = BIND_LABELS, r32ui) uniform readonly uimage3D labels;
 
-// The voxel's own label, else that of the nearest voxel with one, within 2 voxels along each axis, or 1 in a scan; 0: none.
-// Mirrors engine/volume/labels.h.
+// The voxel's own label, else that of the nearest voxel with one, within 2 voxels along each axis; 0: none. Labels of a
+// scan are those of label_near in engine/volume/labels.h.
 uint label_near(ivec3 p) {
     uint label = imageLoad(labels, p).r;
-    IF_ANY(label == 0u) {
-        int nearest = label == 0u ? (LABELS == LABELS_OF_SCAN ? 4 : 13) : 0;
+    bool searches = LABELS == LABELS_OF_MASK && label == 0u;
+    IF_ANY(searches) {
+        int nearest = searches ? 13 : 0;
         for (int i = 0; i < 125; ++i) {
             ivec3 there = clamp(p + ivec3(i % 5, i / 5 % 5, i / 25) - 2, ivec3(0), dims - 1), way = there - p;
             uint other = imageLoad(labels, there).r;

@@ -78,7 +78,7 @@ void main() {
             if (visible) {
                 if (write == 1u) {
                     if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
-                    if (LABELS != 0u) UintsRef(params.scene.labels).at[out_at] = material == 0u ? 0u : label_near(p);
+                    if (LABELS != 0u && SURFACES == 0u) UintsRef(params.scene.labels).at[out_at] = material == 0u ? 0u : label_near(p);
                     uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
                     splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), 0u, material << 28);
                 }

@@ -38,7 +38,8 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         material = transfer_at(TransferRef(params.of_volume.transfer), ClassifiedRef(params.of_volume.values).at[number]);
     else
         material = params.of_volume.materials[splat.edge >> 28];
-    if (LABELS != 0u && (TOGETHER == 0u || params.of_volume.has_labels == 1u)) {
+    // Surfaces find their labels where rays meet them (engine/geometry/seen_label.glsl).
+    if (LABELS != 0u && SURFACES == 0u && (TOGETHER == 0u || params.of_volume.has_labels == 1u)) {
         uint label = UintsRef(params.of_volume.labels).at[number], first = TOGETHER == 1u ? params.of_volume.first_label : 0u;
         material.rgb = label == 0u ? material.rgb : ColorsRef(params.frame.label_colors).at[first + label - 1u];
     }

@@ -174,8 +174,8 @@ void main() {
                     if (TRACED == 1u) outline = shows && searched ? min(outline, traced.outline) : outline;
                 }
                 uint numbered = number_material.x | number_material.y << 28;
-                Shown shown = Shown(numbered, kind_of(numbered), ambient_reach(number_material.x, false), lights_reach(number_material.x));
-                count_vote(pair, vote, where, shown, LABELS != 0u);
+                Shown shown = Shown(numbered, ambient_reach(number_material.x, false), lights_reach(number_material.x));
+                count_vote(pair, vote, where, shown);
             }
         }
         IF_ANY(was_open) {

@@ -27,6 +27,11 @@ ivec3 dims;
 #include "shaders/light/shading.glsl"
 #include "shaders/common/labels.glsl"
 #include "shaders/common/matter.glsl"
+
+uint label_number(ivec3 p) { return imageLoad(labels, p).r; }
+bool label_votes(ivec3 p, uint material) { return LABELS == LABELS_OF_SCAN ? material_of(imageLoad(volume, p).r) == material : label_number(p) > 0u; }
+#include "footprints/in_float.glsl"
+#include "engine/geometry/seen_label.glsl"
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
@@ -57,8 +62,7 @@ vec4 seen_of(SurfaceVotes votes, vec3 u) {
     }
     vec3 color = params.of_volume.materials[material].rgb;
     if (LABELS != 0u) {
-        uint label = begun ? label_near(clamp(ivec3(round(params.of_volume.anchor + params.of_volume.eye + way * u)), ivec3(0), dims - 1))
-                           : votes.kind;
+        uint label = seen_label(params.of_volume.anchor + params.of_volume.eye + way * u, material);
         color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];
     }
     vec3 light = shade(Surface(color, response_of(material), lights_at(votes), dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));

@@ -6,12 +6,6 @@
 // SurfaceVotes::number on the device: bits 0-27 the splat's number, 28-31 the material that is shown.
 uint splat_of(uint number) { return number & NUMBERED_SPLATS; }
 
-// The label of a splat; 0 where matter begins without one. Votes that this picture did not store may have any number.
-uint kind_of(uint number) {
-    bool is_splat = splat_of(number) < params.frame.splat_count;
-    return LABELS != 0u && is_splat ? UintsRef(params.of_volume.labels).at[splat_of(number)] : 0u;
-}
-
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_texel, store_texel)
 
 // Where the k-th of a pixel's VOTE_TEXELS texels lies; with shadows, one more contains the shares of their lights.
@@ -32,7 +26,7 @@ SurfaceVotes load_surface(ivec2 pixel, uint first) {
         vec4 both = load_texel(vote_texel(pixel, VOTE_TEXELS));
         lights = first == 0u ? both.xy : both.zw;
     }
-    return SurfaceVotes(a.x, a.y, a.z, c.x, b.xyz, c.y, lights, number, a.x > 0.0 ? kind_of(number) : 0u, b.w);
+    return SurfaceVotes(a.x, a.y, a.z, c.x, b.xyz, c.y, lights, number, b.w);
 }
 
 void store_surface(ivec2 pixel, uint first, SurfaceVotes votes, vec2 passed) {

@@ -81,10 +81,10 @@ std::vector<std::pair<const char*, Shot>> shots() {
 }
 
 TEST_F(KeptBetweenRuns, DrawTheSamePicture) {
+    Renderer fresh({.device = test_renderer().device().name, .validation = true});
+    Renderer first = next_run(), second = next_run();
     for (const auto& [name, shot] : shots()) {
         SCOPED_TRACE(name);
-        Renderer fresh({.device = test_renderer().device().name, .validation = true});
-        Renderer first = next_run(), second = next_run();
         const RenderResult computed = picture(fresh, shot);
         picture(first, shot);
         const RenderResult read = picture(second, shot);

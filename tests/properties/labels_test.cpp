@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/reference/reference_renderer.h"
+#include "engine/scene/label_fade.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/segmentation.h"
 #include "tests/properties/scenes.h"
@@ -207,6 +208,61 @@ TEST(Labels, AreThousands) {
     }
     EXPECT_LT(row.front(), 0.1F);
     EXPECT_GT(row.back(), 0.9F);
+}
+
+/// Balls of three labels inside each other, radii 14, 9 and 4 voxels.
+Volume nested_balls() {
+    Volume volume;
+    volume.geometry.dims = glm::ivec3(32);
+    for (int i = 0; i < 32 * 32 * 32; ++i) {
+        const double r = glm::length(glm::dvec3(i % 32, i / 32 % 32, i / 1024) - glm::dvec3(15.3, 15.6, 15.4));
+        volume.values.push_back(r < 4 ? 3 : r < 9 ? 2 : r < 14 ? 1 : 0);
+    }
+    finish_volume(volume);
+    return volume;
+}
+
+/// What a scene shows on the ray through the balls' middle: unlit labels 1 red, 2 green, 3 blue.
+glm::dvec3 in_the_middle(const SceneDocument& document) {
+    static const Volume balls = nested_balls();
+    Shot shot;
+    SceneDocument all = document;
+    shot.volume = std::make_shared<const Volume>(prepared_volume(all, balls));
+    read_volumes(all, {}, {}, &balls);
+    shot.scene = resolve_scene(all, *shot.volume);
+    const std::vector<glm::dvec3> colors{glm::dvec3(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    shot.scene.label_colors = colors;
+    for (AddedVolume& added : shot.scene.added)
+        added.label_colors = colors;
+    shot.scene.lights.clear();
+    shot.camera = look(balls, {15.3, 15.6, -400}, {15.3, 15.6, 15.4}, 2, {0, 1, 0});
+    shot.width = shot.height = 9;
+    const Image image = render(shot).color;
+    return {image.at(4, 4, 0), image.at(4, 4, 1), image.at(4, 4, 2)};
+}
+
+TEST(Labels, ThatFadeShowTheWholeNextSurface) {
+    SceneDocument document;
+    document.volume.path = "balls";
+    const auto expect_near = [](const glm::dvec3& seen, const glm::dvec3& expected) {
+        EXPECT_LT(glm::length(seen - expected), 0.02) << seen.x << ' ' << seen.y << ' ' << seen.z;
+    };
+    expect_near(in_the_middle(document), {1, 0, 0});
+    // The share of each shell, 5 voxels thick, in front of the next ball.
+    const auto share = [](double opacity, double outer, double inner) {
+        const double chord = 4.0 / 3 * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer + inner * inner);
+        return -std::expm1(std::log1p(-opacity) * (outer - inner) / chord);
+    };
+    fade_labels(document, "1", 0.3);
+    const double first = share(0.3, 14, 9), second = share(0.6, 9, 4);
+    expect_near(in_the_middle(document), {first, 1 - first, 0});
+    fade_labels(document, "2", 0.6);
+    expect_near(in_the_middle(document), {first, (1 - first) * second, (1 - first) * (1 - second)});
+    document.volume.hide = {"1", "2"};
+    document.volumes.erase(document.volumes.begin());
+    expect_near(in_the_middle(document), {0, second, 1 - second});
+    document.volumes.clear();
+    expect_near(in_the_middle(document), {0, 0, 1});
 }
 
 }  // namespace

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/scene/default_materials.h"
+#include "engine/scene/label_fade.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/views.h"
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/chord.h"
 #include "tests/unit/refusal.h"
 #include "tests/unit/scene_texts.h"
 
@@ -259,6 +263,55 @@ TEST(SceneVolumes, AreAllInThePicture) {
         "volume.transform = [1,0,0,100, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n",
         first);
     EXPECT_GT(glm::length(resolve_camera(far, first, resolve_scene(far, first)).eye), 2 * alone);
+}
+
+/// A ball of radius 20, flattened to 10 mm along z by its grid.
+Volume flat_ball() {
+    Volume volume;
+    volume.geometry.dims = glm::ivec3(50);
+    volume.geometry.index_to_world_axes[2] = {0, 0, 0.5};
+    for (int i = 0; i < 50 * 50 * 50; ++i)
+        volume.values.push_back(
+            glm::length(glm::dvec3(i % 50, i / 50 % 50, i / 2500) - glm::dvec3(24.4, 24.7, 24.6)) < 20 ? 1 : 0);
+    finish_volume(volume);
+    return volume;
+}
+
+TEST(SceneVolumes, HaveAnOpacityInTheMeanOfTheirChords) {
+    const Volume box = builtin_volume("builtin:box:32");
+    // Six volumes by the sum of the sides' areas: an ellipsoid's are twice its shadows, pi times 20 * 20 and 20 * 10.
+    EXPECT_NEAR(mean_chord(flat_ball(), 0.5), 6 * (4.0 / 3 * 20 * 20 * 10) / (2 * (400 + 2 * 200)), 0.05);
+    SceneDocument document = parse("volume.path = \"builtin:box:32\"\nvolume.opacity = 0.4");
+    const Scene scene = resolve_scene(document, box);
+    EXPECT_NEAR(-std::expm1(-scene.materials.back().extinction * mean_chord(box, scene.iso_values.front())), 0.4,
+                1e-12);
+    document.volume.opacity = 1;
+    EXPECT_EQ(resolve_scene(document, box).materials.back().extinction, default_extinction(true, box.geometry));
+    document.materials = {{.extinction = 1}};
+    EXPECT_THAT(refusal([&] { resolve_scene(document, box); }),
+                AllOf(HasSubstr("volume.opacity"), HasSubstr("materials[0]")));
+    EXPECT_THAT(problems("volume.path = \"builtin:box\"\nvolume.opacity = 1.5"), Contains(HasSubstr("volume.opacity")));
+}
+
+TEST(SceneVolumes, ShowFadedLabelsAlone) {
+    SceneDocument document = parse("volume.path = \"builtin:box\"\nvolume.hide = [\"skull\"]");
+    const SceneDocument before = document;
+    fade_labels(document, "lung*", 0.5);
+    fade_labels(document, "7", 0.2);
+    fade_labels(document, "lung*", 0.3);
+    ASSERT_EQ(document.volumes.size(), 2U);
+    EXPECT_THAT(document.volume.hide, ElementsAre("skull", "lung*", "7"));
+    EXPECT_THAT(document.volumes[0].volume.only, ElementsAre("lung*"));
+    EXPECT_THAT(document.volumes[0].volume.hide, ElementsAre("skull", "7")) << "no voxel is shown twice";
+    EXPECT_EQ(document.volumes[0].volume.opacity, 0.3);
+    EXPECT_EQ(opacity_of_labels(document, "7"), 0.2);
+    EXPECT_EQ(parse(scene_text(document)), document);
+    fade_labels(document, "7", 1);
+    fade_labels(document, "lung*", 1);
+    EXPECT_EQ(document, before);
+    fade_labels(document, "*", 0.6);
+    EXPECT_EQ(document.volume.opacity, 0.6);
+    EXPECT_TRUE(document.volumes.empty());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "engine/volume/label_names.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/sample_source.h"
+#include "engine/volume/smooth_labels.h"
 
 namespace {
 
@@ -135,20 +136,33 @@ TEST(Labels, KeepEveryVoxelOnItsSide) {
             for (int x = 0; x < 31; ++x) {
                 const float sample = drawn.at(x, y, z);
                 ASSERT_EQ(sample > 0.5F, noise(glm::dvec3(x, y, z))) << x << ' ' << y << ' ' << z;
-                ASSERT_GE(std::abs(sample - 0.5F), 0.049F);
+                ASSERT_GE(std::abs(sample - 0.5F) * 2 * edgesplat::kLabelReach, 0.049F);
             }
+}
+
+/// Distance from the surface, voxels, of a sample.
+double depth(const Volume& mask, const glm::ivec3& p) {
+    return 2 * edgesplat::kLabelReach * (static_cast<double>(mask.at(p.x, p.y, p.z)) - 0.5);
 }
 
 TEST(Labels, KeepTheirThickness) {
     const Volume sheet = drawn_mask([](const glm::dvec3& p) { return p.x == 15; });
-    const double inside = static_cast<double>(sheet.at(15, 15, 15)), beside = static_cast<double>(sheet.at(14, 15, 15));
-    EXPECT_NEAR(2 * (inside - 0.5) / (inside - beside), 0.955, 0.01);
+    const double inside = depth(sheet, {15, 15, 15}), beside = depth(sheet, {14, 15, 15});
+    EXPECT_NEAR(2 * inside / (inside - beside), 1, 0.05);
     const Volume strand = drawn_mask([](const glm::dvec3& p) { return p.x == p.y && std::abs(p.z - p.x) < 0.1; });
-    EXPECT_NEAR(static_cast<double>(strand.at(15, 15, 15)), 0.7, 1e-6);
-    // A face of thick matter is a sum of binomials: 2 * (1 + 4 + 6) / 16 - (1 + 8 + 28 + 56 + 70) / 256.
+    EXPECT_NEAR(depth(strand, {15, 15, 15}), 0.3, 1e-5);
+    // A plane between voxels is where it is, and samples are distances from it.
     const Volume half = drawn_mask([](const glm::dvec3& p) { return p.x < 15; });
-    EXPECT_FLOAT_EQ(half.at(14, 15, 15), 0.73828125F);
-    EXPECT_FLOAT_EQ(half.at(15, 15, 15), 0.26171875F);
+    for (int x = 13; x < 17; ++x)
+        EXPECT_NEAR(depth(half, {x, 15, 15}), 14.5 - x, 0.01) << x;
+}
+
+TEST(Labels, OnBothSidesHaveOneSurface) {
+    const auto inside = [](const glm::dvec3& p) { return std::cos(p.x * p.x + 3 * p.y + p.y * p.z) > 0.3; };
+    const auto outside = [](const glm::dvec3& p) { return !(std::cos(p.x * p.x + 3 * p.y + p.y * p.z) > 0.3); };
+    const Volume one = drawn_mask(inside), other = drawn_mask(outside);
+    for (int i = 0; i < 31 * 31; ++i)
+        EXPECT_NEAR(depth(one, {i % 31, i / 31, 11}), -depth(other, {i % 31, i / 31, 11}), 1e-4);
 }
 
 TEST(Labels, AreBallsInsteadOfStairs) {
@@ -169,7 +183,7 @@ TEST(Labels, AreBallsInsteadOfStairs) {
                 ++count;
             }
     EXPECT_GT(count, 600);
-    EXPECT_LT(std::sqrt(off / count), 0.1);
+    EXPECT_LT(std::sqrt(off / count), 0.065);
     EXPECT_GT(std::sqrt(off_of_mask / count), 0.18);
 }
 
