@@ -81,7 +81,7 @@ void own_colors(AppState& state) {
 /// The opacity of a label; the other labels' own is 1.
 void faded(AppState& state, const std::string& number) {
     const double now = edgesplat::opacity_of_labels(state.session.document(), number);
-    slide(state, "##opacity", now, {0.05, 1, "%.2f"},
+    slide(state, ("##fade" + number).c_str(), now, {0.05, 1, "%.2f"},
           [&](SceneDocument& d, double opacity) { edgesplat::fade_labels(d, number, opacity); });
 }
 

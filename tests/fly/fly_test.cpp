@@ -7,7 +7,9 @@ namespace edgesplat {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(FlyTest, OpensBuiltinSceneWithoutArguments) {
     fly("settle\nexpect volume == builtin:cube-hole\nexpect finished == yes\nexpect error == none\n"
@@ -165,13 +167,20 @@ TEST_F(FlyTest, ShowsAndHidesLabels) {
     file.close();
     fly("size 640 760\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
         "settle\nexpect error == none\npicture some.png\nsave some.toml\nkey Ctrl+Z\nframes 2\nsettle\n"
-        "picture again.png\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
+        "picture again.png\ntap scene.labels.fade5\nframes 2\nsettle\nexpect error == none\npicture faded.png\n"
+        "save faded.toml\ntap scene.labels.5\nframes 2\nsettle\nsave hidden.toml\nkey Ctrl+Z\nkey Ctrl+Z\nkey Ctrl+Z\n"
+        "frames 2\nsettle\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
         "expect iso > 0\nsave numbers.toml\n",
         "labels.nrrd");
     EXPECT_THAT(text_of(folder_ / "some.toml"), HasSubstr("hide = [\"5\"]"));
     EXPECT_THAT(text_of(folder_ / "numbers.toml"), HasSubstr("labels = false"));
     EXPECT_LT(compare_images(image("all.png"), image("some.png")).psnr, 40);
     EXPECT_GT(compare_images(image("all.png"), image("again.png")).psnr, 60);
+    EXPECT_LT(compare_images(image("all.png"), image("faded.png")).psnr, 40);
+    EXPECT_LT(compare_images(image("some.png"), image("faded.png")).psnr, 40);
+    EXPECT_THAT(text_of(folder_ / "faded.toml"),
+                AllOf(HasSubstr("hide = [\"5\"]"), HasSubstr("only = [\"5\"]"), HasSubstr("opacity = 0.5")));
+    EXPECT_THAT(text_of(folder_ / "hidden.toml"), AllOf(HasSubstr("hide = [\"5\"]"), Not(HasSubstr("opacity = "))));
 }
 
 TEST_F(FlyTest, ResizesAndMinimises) {
