@@ -147,9 +147,11 @@ void labels_panel(AppState& state) {
             const unsigned swatch = painted(place < colors.size() ? colors[place] : glm::dvec3(0));
             ImGui::ColorButton("##colour", ImGui::ColorConvertU32ToFloat4(swatch), ImGuiColorEditFlags_NoTooltip);
             ImGui::SameLine();
-            ImGui::SetNextItemWidth(4 * static_cast<float>(state.em));
-            faded(state, number);
-            ImGui::SameLine();
+            if (place != state.editing.labels.background) {
+                ImGui::SetNextItemWidth(4 * static_cast<float>(state.em));
+                faded(state, number);
+                ImGui::SameLine();
+            }
             ImGui::TextUnformatted(text_of(*table, label).c_str());
             ImGui::PopID();
             if (!clicked) continue;
