@@ -61,7 +61,9 @@ TEST(SeenLabels, AreThoseOfTheNearestVoxelAmongMany) {
 
 /// Matter without a label counts; voxels without matter do not.
 TEST(SeenLabels, OfScansEndWhereMatterHasNone) {
-    Labelled scan{.number = [](const ivec3& p) { return p.x < 20 ? 3U : 0U; },
+    Labelled scan{.number = [](const ivec3& p) { return p.z > 20   ? 5U
+                                                        : p.x < 20 ? 3U
+                                                                   : 0U; },
                   .matter = [](const ivec3& p) { return p.z <= 20; },
                   .on_scan = true};
     for (const double x : {12.0, 18.9, 20.1, 28.0})
