@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 
 #include "apps/edgesplat-fly/panels.h"
 #include "apps/edgesplat-fly/widgets.h"
@@ -41,9 +42,10 @@ const std::vector<bool>& shown_labels(AppState& state, const edgesplat::Volume& 
     return list.shown;
 }
 
-/// Shows those labels, by the shorter of both lists. With a segmentation of its own a volume has other matter, too: it
-/// is hidden if `alone`.
-void show_labels(AppState& state, const LabelTable& table, const std::vector<bool>& shown, bool alone) {
+/// Shows those labels, by the shorter of both lists; the `chosen` ones, by place, are no longer faded. With a
+/// segmentation of its own a volume has other matter, too: it is hidden if `alone`.
+void show_labels(AppState& state, const LabelTable& table, const std::vector<bool>& shown, bool alone,
+                 const std::vector<std::size_t>& chosen) {
     std::vector<std::string> only, hide;
     const std::size_t background = state.editing.labels.background;
     for (std::size_t place = 0; place < shown.size(); ++place) {
@@ -59,6 +61,10 @@ void show_labels(AppState& state, const LabelTable& table, const std::vector<boo
     const bool of_scan = background >= shown.size();
     const bool by_hiding = of_scan ? !alone : !shown[background] && hide.size() <= only.size();
     state.session.edit([&](SceneDocument& d) {
+        for (const std::size_t place : chosen) {
+            const std::string number = table.number_of(table.labels[place]);
+            if (edgesplat::opacity_of_labels(d, number) < 1) edgesplat::fade_labels(d, number, 1);
+        }
         d.volume.only = by_hiding ? std::vector<std::string>{} : only;
         d.volume.hide = by_hiding ? hide : std::vector<std::string>{};
     });
@@ -78,8 +84,8 @@ void own_colors(AppState& state) {
     });
 }
 
-/// The opacity of a label; the other labels' own is 1.
-void faded(AppState& state, const std::string& number) {
+/// A slider for the opacity of a label.
+void fade(AppState& state, const std::string& number) {
     const double now = edgesplat::opacity_of_labels(state.session.document(), number);
     slide(state, ("##fade" + number).c_str(), now, {0.05, 1, "%.2f"},
           [&](SceneDocument& d, double opacity) { edgesplat::fade_labels(d, number, opacity); });
@@ -98,7 +104,7 @@ void labels_panel(AppState& state) {
     const std::vector<bool> shown = shown_labels(state, *samples, *table);
     if (of_scan) {
         bool others = !alone;
-        if (ImGui::Checkbox("matter of no label", &others)) show_labels(state, *table, shown, !others);
+        if (ImGui::Checkbox("matter of no label", &others)) show_labels(state, *table, shown, !others, {});
         note(state, "others");
     }
     std::string& wanted = state.editing.labels.search;
@@ -114,21 +120,23 @@ void labels_panel(AppState& state) {
         std::vector<bool> next = shown;
         for (const std::size_t place : places)
             next[place] = next[place] || place != state.editing.labels.background;
-        show_labels(state, *table, next, alone);
+        show_labels(state, *table, next, alone, places);
     }
     ImGui::SameLine();
     if (button(state, "hide")) {
         std::vector<bool> next = shown;
         for (const std::size_t place : places)
             next[place] = false;
-        show_labels(state, *table, next, alone);
+        show_labels(state, *table, next, alone, places);
     }
     ImGui::SameLine();
     if (button(state, "only these")) {
         std::vector<bool> next(shown.size(), false);
         for (const std::size_t place : places)
             next[place] = place != state.editing.labels.background;
-        show_labels(state, *table, next, true);
+        std::vector<std::size_t> all(shown.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        show_labels(state, *table, next, true, all);
     }
     ImGui::BeginChild("list", {0, 16 * static_cast<float>(state.em)}, true);
     const std::vector<glm::dvec3>& colors = state.session.scene().label_colors;
@@ -149,16 +157,15 @@ void labels_panel(AppState& state) {
             ImGui::SameLine();
             if (place != state.editing.labels.background) {
                 ImGui::SetNextItemWidth(4 * static_cast<float>(state.em));
-                faded(state, number);
+                fade(state, number);
                 ImGui::SameLine();
             }
             ImGui::TextUnformatted(text_of(*table, label).c_str());
             ImGui::PopID();
             if (!clicked) continue;
-            state.session.edit([&](SceneDocument& d) { edgesplat::fade_labels(d, number, 1); });
             std::vector<bool> next = shown;
             next[place] = on;
-            show_labels(state, *table, next, alone);
+            show_labels(state, *table, next, alone, {place});
         }
     ImGui::EndChild();
 }

@@ -100,9 +100,8 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
         const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
         ScaledScene bodies = surface_scene_.emplace(scene_, volume).bodies;
         bodies.drawn.assign(bodies.drawn.size(), true);
-        surfaces_ =
-            surface_splats(field(), *surface_scene_, scene_, estimate_edges(field(), bodies, settings_, quantised),
-                           range > 0 ? volume.noise / range : 0, quantised);
+        surfaces_ = surface_splats(field(), *surface_scene_, estimate_edges(field(), bodies, settings_, quantised),
+                                   range > 0 ? volume.noise / range : 0, quantised);
     }
     edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (draws_faces(settings_)) {

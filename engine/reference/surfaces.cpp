@@ -319,7 +319,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     return geometry::FieldGeometry::voxel_edge(at.fit_surface(i, static_cast<std::uint32_t>(m)));
 }
 
-std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
+std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool quantised) {
     const ScaledScene& bodies = surfaces.bodies;
     std::vector<SplatRecord> records;
@@ -338,8 +338,6 @@ std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& 
             if (quantised) record.edge = quantise(record.edge);
             const double own = field.at(field.voxel(record.voxel));
             record.material = static_cast<std::uint32_t>(surfaces.materials.material(own));
-            record.classified =
-                labelled(field, surfaces.materials, scene, record.voxel, static_cast<int>(record.material));
         }
     });
     return records;

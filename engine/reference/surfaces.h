@@ -29,7 +29,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& bodies, const std::
 
 /// The splats of the voxels that matter ends beside, ascending by voxel. Their materials are those of the whole scene.
 /// `surfels` are edges of the bodies.
-std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
+std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool quantised);
 
 /// A surface that a ray meets.

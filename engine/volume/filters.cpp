@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
 #include "engine/error.h"
 #include "engine/volume/labels.h"
-#include "engine/volume/lines_internal.h"
 #include "engine/volume/packed_internal.h"
 #include "engine/volume/parallel.h"
 
@@ -34,6 +34,27 @@ Volume like(const Volume& volume) {
 
 using detail::bin_of;
 
+/// Lines side by side in memory: first the first sample of each line, then the second of each, and so on.
+struct Lines {
+    float* samples;
+    std::size_t count;   ///< lines
+    std::size_t length;  ///< samples of a line
+    std::size_t stride;  ///< between successive samples of a line
+    float* sample(std::size_t i) const { return samples + i * stride; }
+};
+
+/// Calls `work(lines)` for all lines of `field` (x fastest) along an axis, in parallel.
+template <typename Work>
+void along_axis(std::vector<float>& field, const glm::ivec3& dims, int axis, const Work& work) {
+    const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
+    const auto length = static_cast<std::size_t>(dims[axis]), stride = axis == 0 ? 1 : axis == 1 ? row : slice;
+    const std::size_t together = axis == 0 ? 1 : row, apart = axis == 1 ? slice : row;
+    parallel_for(static_cast<int>(field.size() / (length * together)), [&](int begin, int end) {
+        for (auto group = static_cast<std::size_t>(begin); group < static_cast<std::size_t>(end); ++group)
+            work(Lines{field.data() + group * apart, together, length, stride});
+    });
+}
+
 /// Pivots of the equations c[i-1] + 4 c[i] + c[i+1] = 6 f[i] with c = f at both ends, by elimination from the first.
 std::vector<float> spline_pivots(int length) {
     std::vector<float> pivots(static_cast<std::size_t>(length), 0.0F);
@@ -43,7 +64,7 @@ std::vector<float> spline_pivots(int length) {
 }
 
 /// Replaces samples by the coefficients of the interpolating spline.
-void solve_lines(const detail::Lines& lines, const std::vector<float>& pivots) {
+void solve_lines(const Lines& lines, const std::vector<float>& pivots) {
     const std::size_t last = lines.length - 1;
     for (std::size_t i = 1; i < last; ++i) {
         const float* const before = lines.sample(i - 1);
@@ -162,7 +183,7 @@ std::vector<float> bspline_coefficients(const std::vector<float>& field, const g
     std::vector<float> coefficients = field;
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<float> pivots = spline_pivots(dims[axis]);
-        detail::along_axis(coefficients, dims, axis, [&](const detail::Lines& lines) { solve_lines(lines, pivots); });
+        along_axis(coefficients, dims, axis, [&](const Lines& lines) { solve_lines(lines, pivots); });
     }
     return coefficients;
 }

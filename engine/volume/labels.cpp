@@ -220,13 +220,16 @@ std::vector<std::uint32_t> drawn_numbers(const ShownLabels& labels, const glm::i
                                          const glm::ivec3& size) {
     std::vector<std::uint32_t> numbers = labels_in_box(labels.at, dims, low, size);
     if (!labels.on_scan) return numbers;
-    std::vector<char> has_labels;  // per line along x of the volume
-    for (auto row = labels.at.begin(); row != labels.at.end(); row += dims.x)
-        has_labels.push_back(std::any_of(row, row + dims.x, [](std::uint32_t number) { return number > 0; }) ? 1 : 0);
+    // Most lines along x are far from all labels.
+    const glm::ivec3 first = glm::max(low - 1, glm::ivec3(0)), last = glm::min(low + size, dims - 1);
+    const auto has_labels = [&](int y, int z) {
+        const auto row = labels.at.begin() + static_cast<std::ptrdiff_t>(voxel_offset(dims, {first.x, y, z}));
+        return std::any_of(row, row + (last.x - first.x + 1), [](std::uint32_t number) { return number > 0; });
+    };
     const auto is_near = [&](const glm::ivec3& p) {
         for (int i = 0; i < 9; ++i) {
-            const glm::ivec3 row = glm::clamp(p + glm::ivec3(0, i % 3 - 1, i / 3 - 1), glm::ivec3(0), dims - 1);
-            if (has_labels[static_cast<std::size_t>(row.y + dims.y * row.z)] != 0) return true;
+            const glm::ivec3 row = glm::clamp(p + glm::ivec3(0, i % 3 - 1, i / 3 - 1), first, last);
+            if (has_labels(row.y, row.z)) return true;
         }
         return false;
     };

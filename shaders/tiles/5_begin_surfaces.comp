@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_INNER) const uint INNER = 0u;
-const uint CREASES = 0u, LABELS = 0u;
+const uint CREASES = 0u;
 #include "shaders/common/frame.glsl"
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;

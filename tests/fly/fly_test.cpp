@@ -168,8 +168,9 @@ TEST_F(FlyTest, ShowsAndHidesLabels) {
     fly("size 640 760\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
         "settle\nexpect error == none\npicture some.png\nsave some.toml\nkey Ctrl+Z\nframes 2\nsettle\n"
         "picture again.png\ntap scene.labels.fade5\nframes 2\nsettle\nexpect error == none\npicture faded.png\n"
-        "save faded.toml\ntap scene.labels.5\nframes 2\nsettle\nsave hidden.toml\nkey Ctrl+Z\nkey Ctrl+Z\nkey Ctrl+Z\n"
-        "frames 2\nsettle\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
+        "save faded.toml\ntap scene.labels.5\nframes 2\nsettle\nsave hidden.toml\nkey Ctrl+Z\nframes 2\nsettle\nkey "
+        "Ctrl+Z\n"
+        "frames 2\nsettle\npicture unfaded.png\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
         "expect iso > 0\nsave numbers.toml\n",
         "labels.nrrd");
     EXPECT_THAT(text_of(folder_ / "some.toml"), HasSubstr("hide = [\"5\"]"));
@@ -177,6 +178,7 @@ TEST_F(FlyTest, ShowsAndHidesLabels) {
     EXPECT_LT(compare_images(image("all.png"), image("some.png")).psnr, 40);
     EXPECT_GT(compare_images(image("all.png"), image("again.png")).psnr, 60);
     EXPECT_LT(compare_images(image("all.png"), image("faded.png")).psnr, 40);
+    EXPECT_GT(compare_images(image("all.png"), image("unfaded.png")).psnr, 60) << "each tap is one step";
     EXPECT_LT(compare_images(image("some.png"), image("faded.png")).psnr, 40);
     EXPECT_THAT(text_of(folder_ / "faded.toml"),
                 AllOf(HasSubstr("hide = [\"5\"]"), HasSubstr("only = [\"5\"]"), HasSubstr("opacity = 0.5")));
