@@ -42,8 +42,10 @@ void name_field(AppState& state, std::size_t m) {
 /// A slider of the light response; `member` of the document's material.
 void response(AppState& state, std::size_t m, const char* label, double value, const SlideRange& range,
               std::optional<double> MaterialChoice::*member) {
-    slide(state, label, value, range,
-          [m, member](SceneDocument& d, double v) { viewer::material_choice(d, m).*member = v; });
+    slide(state, label, value, range, [m, member](SceneDocument& d, double v) {
+        viewer::material_choice(d, m).*member = v;
+        if (member == &MaterialChoice::extinction) d.volume.opacity.reset();
+    });
 }
 
 /// Edits an iso-value. Returns whether it still exists.

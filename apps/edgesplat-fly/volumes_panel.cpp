@@ -2,7 +2,10 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <utility>
 
 #include "apps/edgesplat-fly/panels.h"
 #include "apps/edgesplat-fly/widgets.h"
@@ -29,8 +32,7 @@ SceneDocument& written_out(SceneDocument& d, const edgesplat::AddedVolume& added
 }
 
 /// Colour and opacity of the highest material, and its iso-value.
-void matter(AppState& state, std::size_t i) {
-    const edgesplat::AddedVolume added = state.session.scene().added[i];
+void matter(AppState& state, std::size_t i, const edgesplat::AddedVolume added) {
     if (!added.transfer.empty() || added.materials.size() < 2) return;
     const edgesplat::Volume& volume = *added.volume;
     const edgesplat::Material& top = added.materials.back();
@@ -46,8 +48,10 @@ void matter(AppState& state, std::size_t i) {
                   [&](SceneDocument& d, double v) { written_out(d, added, i).iso_values.front() = v; });
     }
     const auto scale = edgesplat::viewer::ExtinctionScale::of(volume.geometry);
-    slide(state, "per mm", top.extinction, {0, scale.most, "%.4f", true},
-          [&](SceneDocument& d, double v) { written_out(d, added, i).materials.back().extinction = v; });
+    slide(state, "per mm", top.extinction, {0, scale.most, "%.4f", true}, [&](SceneDocument& d, double v) {
+        written_out(d, added, i).materials.back().extinction = v;
+        d.volumes[i].volume.opacity.reset();
+    });
 }
 
 /// Whether a volume is shown and cut; `source` is its part of a document.
@@ -56,6 +60,31 @@ void switches(AppState& state, const edgesplat::VolumeSource& now,
     flag(state, "visible", now.visible, [&](SceneDocument& d, bool on) { source(d).visible = on; });
     ImGui::SameLine();
     flag(state, "clip", now.clip, [&](SceneDocument& d, bool on) { source(d).clip = on; });
+}
+
+/// What is seen where the volume overlaps others.
+void rules(AppState& state, edgesplat::VolumeRule now, std::size_t i) {
+    using enum edgesplat::VolumeRule;
+    bool first = true;
+    for (const auto& [rule, name] : {std::pair{Add, "add"}, {Inside, "inside"}, {Cut, "cut"}}) {
+        if (!std::exchange(first, false)) ImGui::SameLine();
+        if (ImGui::RadioButton(name, now == rule))
+            state.session.edit([i, rule](SceneDocument& d) { d.volumes[i].volume.rule = rule; });
+        note(state, name);
+    }
+}
+
+/// How far the volume is shifted from the file's place.
+void place(AppState& state, const edgesplat::VolumeSource& now, std::size_t i) {
+    glm::dvec3 shift(0);
+    for (int axis = 0; axis < 3 && !now.transform.empty(); ++axis)
+        shift[axis] = now.transform[static_cast<std::size_t>(4 * axis + 3)];
+    drag3(state, "shift", shift, 0.5, [i](SceneDocument& d, const glm::dvec3& v) {
+        std::vector<double>& rows = d.volumes[i].volume.transform;
+        if (rows.empty()) rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        for (int axis = 0; axis < 3; ++axis)
+            rows[static_cast<std::size_t>(4 * axis + 3)] = v[axis];
+    });
 }
 
 std::string short_name(const std::string& path) {
@@ -80,16 +109,20 @@ void volumes_panel(AppState& state) {
         switches(
             state, entry.volume, [i](SceneDocument & d) -> auto& { return d.volumes[i].volume; });
         ImGui::SameLine();
-        flag(state, "inside", entry.volume.rule == edgesplat::VolumeRule::Inside, [i](SceneDocument& d, bool on) {
-            d.volumes[i].volume.rule = on ? edgesplat::VolumeRule::Inside : edgesplat::VolumeRule::Add;
-        });
-        ImGui::SameLine();
         if (button(state, "remove")) {
             session.edit(
                 [i](SceneDocument& d) { d.volumes.erase(d.volumes.begin() + static_cast<std::ptrdiff_t>(i)); });
             break;
         }
-        if (entry.volume.visible && i < session.scene().added.size()) matter(state, i);
+        rules(state, entry.volume.rule, i);
+        const auto& before = session.document().volumes;
+        if (i >= before.size()) break;
+        if (entry.volume.visible && !cuts(before[i])) {
+            const auto cutters =
+                std::ranges::count_if(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(i), edgesplat::cuts);
+            matter(state, i, session.scene().added[i - static_cast<std::size_t>(cutters)]);
+        }
+        place(state, before[i].volume, i);
     }
     ImGui::Separator();
     static std::string path;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apps/edgesplat/renderer_option.h"
 #include "engine/error.h"
@@ -31,11 +32,14 @@ SceneDocument document_at(const Film& film, double time) {
 /// Reads the volumes that `document` shows, if the renderer holds others.
 void show_volume(Film& film, edgesplat::Renderer& renderer, SceneDocument& document) {
     read_volumes(document, film.folders);
-    if (document.volume == film.source) return;
-    film.source = document.volume;
-    document.volume.checksum.clear();  // that of the first frame
-    film.volume = std::make_shared<const edgesplat::Volume>(load_scene_volume(document, film.folders, {}));
-    renderer.set_volume(film.volume);
+    if (document.volume != film.source) {
+        film.source = document.volume;
+        document.volume.checksum.clear();  // that of the first frame
+        film.whole = std::make_shared<const edgesplat::Volume>(
+            prepared_volume(document, read_source(document.volume, film.folders)));
+    }
+    const auto before = std::exchange(film.volume, film.cuts.apply(document, film.whole));
+    if (film.volume != before) renderer.set_volume(film.volume);
 }
 
 }  // namespace
@@ -59,7 +63,8 @@ Film film_of(SceneDocument document, const std::vector<std::filesystem::path>& f
     film.document = std::move(document);
     film.source = film.document.volume;
     film.folders = folders;
-    film.volume = std::move(volume);
+    film.whole = film.document.whole ? film.document.whole : std::move(volume);
+    film.volume = film.cuts.apply(film.document, film.whole);
     const edgesplat::RendererKind renderer = film.document.output.renderer;
     if (renderer != edgesplat::RendererKind::Splat)
         require_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));

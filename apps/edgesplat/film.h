@@ -8,13 +8,15 @@
 
 #include "engine/renderer.h"
 #include "engine/scene/camera_path.h"
+#include "engine/scene/cuts.h"
 #include "engine/scene/scene_document.h"
 
 struct Film {
     edgesplat::SceneDocument document;
-    std::vector<std::filesystem::path> folders;  ///< where the volume is searched
-    edgesplat::VolumeSource source;              ///< of the volume that the renderer holds; changes if it is animated
-    std::shared_ptr<const edgesplat::Volume> volume;
+    std::vector<std::filesystem::path> folders;              ///< where the volume is searched
+    edgesplat::VolumeSource source;                          ///< of the film's volume; changes if it is animated
+    std::shared_ptr<const edgesplat::Volume> whole, volume;  ///< before and after others cut it
+    edgesplat::Cuts cuts;
     edgesplat::CameraPath path;
     std::vector<edgesplat::AnimatedParameter> animation;
     edgesplat::Settings settings;

@@ -20,8 +20,9 @@
 
 namespace edgesplat {
 
-/// What is seen where volumes overlap: the matter of both; or within this volume's grid only its own.
-enum class VolumeRule { Add, Inside };
+/// What is seen where volumes overlap: the matter of both; within this volume's grid only its own; or neither: this
+/// volume is not drawn, and its matter removes that of the others.
+enum class VolumeRule { Add, Inside, Cut };
 
 /// The volume, its preprocessing (threshold or labels, box filter, crop, in this order) and its place in the scene.
 struct VolumeSource {
@@ -137,6 +138,7 @@ struct ClipBox {
 struct ReadVolume {
     VolumeSource source;
     std::vector<double> iso_values;
+    VolumeGeometry still;  ///< before the source's transform
     std::shared_ptr<const Volume> volume;
 };
 
@@ -163,6 +165,8 @@ struct SceneDocument {
     /// Volumes beside the first one. Of each only the volume and its matter count (kAddedKeys).
     std::vector<SceneDocument> volumes;
     std::shared_ptr<const ReadVolume> read;  ///< of an entry of `volumes` (read_volumes)
+    std::shared_ptr<const Volume> whole;     ///< the first volume before others cut it (Cuts); null: none does
+    std::shared_ptr<const Volume> cut;       ///< of an entry: the volume as others cut it (Cuts); null: none does
     bool operator==(const SceneDocument&) const = default;
 };
 
@@ -216,6 +220,12 @@ Volume prepared_volume(SceneDocument& document, Volume volume);
 /// If the document leaves its iso-values to statistics of the volume, makes those for this volume the document's.
 void set_open_iso_values(SceneDocument& document, const Volume& volume);
 
+/// Whether an entry of `volumes` is not drawn, but removes matter of the others.
+bool cuts(const SceneDocument& entry);
+
+/// The lowest value of visible matter, in the samples' unit. Throws Error if the lowest samples may be matter.
+double lowest_matter(const SceneDocument& document, const Volume& volume);
+
 /// Reads and preprocesses the volumes beside the first one that are not read yet, or whose source has changed. `first`:
 /// what read_source gave for the first one; those with the same reading_part are not read again. Throws Error naming
 /// the volume.
@@ -241,7 +251,8 @@ void choose_labels(SceneDocument& document, const Volume& volume);
 /// presets; the builtin scene; 0.5 after a threshold and for drawn labels; the strongest suggestion for the volume.
 /// Drawn labels have the colours of their table, by default one by number; with a material's colour all have that.
 /// Omitted extinctions: 8 per voxel of mean spacing for the highest material, 0.15 for those below it, 0 below the
-/// lowest iso-value. Its other volumes must be read (read_volumes). Throws Error.
+/// lowest iso-value. What the data decide, volumes decide as they are before cuts. Its other volumes must be read
+/// (read_volumes) and cut (Cuts). Throws Error.
 Scene resolve_scene(const SceneDocument& document, const Volume& volume);
 
 /// The camera for the size in `document.output`. By default: front of a builtin volume and of a patient (top if that is

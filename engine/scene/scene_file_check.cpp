@@ -20,7 +20,8 @@ class Checker {
     Checker(const SceneDocument& document, const std::vector<fs::path>& folders, bool added = false)
         : d_(document), folders_(folders) {
         if (!added && d_.volume.rule != VolumeRule::Add)
-            add("volume.rule", "\"inside\" is for a volume beside the first; expected it in an entry of [[volumes]]");
+            add("volume.rule", "\"{}\" is for a volume beside the first; expected it in an entry of [[volumes]]",
+                d_.volume.rule == VolumeRule::Cut ? "cut" : "inside");
         if (d_.volume.rim > 0 && d_.volume.rule != VolumeRule::Inside)
             add("volume.rim", "a rim is where a volume replaces the others; expected volume.rule = \"inside\"");
     }
@@ -227,6 +228,7 @@ class Checker {
         if (!o.file.empty() && !o.file.ends_with(".png") && !o.file.ends_with(".exr"))
             add("output.file", "\"{}\": expected a name that ends in .png or .exr", o.file);
         const std::string_view renderer = name_of(o.renderer);
+        const bool several = !std::ranges::all_of(d_.volumes, cuts);
         const bool only_tau = o.renderer == RendererKind::Reference;
         for (const std::string& aov : o.aovs)
             if (o.renderer != RendererKind::Splat && !(only_tau && aov == "tau"))
@@ -236,14 +238,16 @@ class Checker {
         if (!o.aovs.empty() && o.compare_raycast) add("output.compare_raycast", "true: expected no aovs beside it");
         if (o.compare_raycast && o.renderer != RendererKind::Splat)
             add("output.compare_raycast", "true: expected renderer \"splat\"");
-        if (o.renderer != RendererKind::Splat && !d_.volumes.empty())
+        if (o.renderer != RendererKind::Splat && several)
             add("output.renderer", "\"{}\" draws one volume, but the scene has several; expected \"splat\"", renderer);
-        if (o.compare_raycast && !d_.volumes.empty())
+        if (o.compare_raycast && several)
             add("output.compare_raycast", "true: rays show one volume, but the scene has several volumes");
-        if (d_.quality.max_error && !d_.volumes.empty())
+        if (d_.quality.max_error && several)
             add("quality.max_error", "its model is of one volume, but the scene has several");
         if (o.renderer == RendererKind::Truth && !is_builtin(d_.volume.path) && !d_.volume.path.empty())
             add("output.renderer", "\"truth\" needs the exact scene, which only builtin:NAME volumes have");
+        if (o.renderer == RendererKind::Truth && !d_.volumes.empty())
+            add("output.renderer", "\"truth\" shows a builtin volume whole, but others cut it");
         if (o.renderer != RendererKind::Splat && d_.quality.max_error)
             add("quality.max_error", "applies to splatting only; it needs output.renderer \"splat\"");
     }

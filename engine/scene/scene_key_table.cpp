@@ -104,9 +104,9 @@ void add_volume(KeyTable& t) {
            .range = kOpacity,
            .absent = "the materials' extinctions"});
     t.add("volume.rule", MEMBER(volume.rule),
-          {.help = "Of a volume beside the first, where others overlap it: add: the matter of both is drawn; inside: "
-                   "within its grid only its own, as of a finer scan",
-           .choices = {"add", "inside"}});
+          {.help = "Where a volume beside the first overlaps others: add: both are drawn; inside: within its grid only "
+                   "it, as a finer scan; cut: it is hidden and removes their matter",
+           .choices = {"add", "inside", "cut"}});
     t.add("volume.rim", MEMBER(volume.rim),
           {.unit = "mm",
            .help = "With rule = inside: from its sides inwards, over this length, other translucent matter gives way",

@@ -183,14 +183,17 @@ void write_out_materials(SceneDocument& document, const Scene& scene, const Volu
         MaterialChoice all = choice_of(scene.materials.back());
         all.color = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
         document.materials = {all};
-        return;
+    } else {
+        document.iso_values = scene.iso_values;
+        for (double& value : document.iso_values)
+            value = volume.in_file_unit(value);
+        document.materials.clear();
+        for (std::size_t m = 1; m < scene.materials.size(); ++m)
+            document.materials.push_back(choice_of(scene.materials[m]));
     }
-    document.iso_values = scene.iso_values;
-    for (double& value : document.iso_values)
-        value = volume.in_file_unit(value);
-    document.materials.clear();
-    for (std::size_t m = 1; m < scene.materials.size(); ++m)
-        document.materials.push_back(choice_of(scene.materials[m]));
+    // The volume's opacity decides the extinctions.
+    for (MaterialChoice& material : document.materials)
+        if (document.volume.opacity) material.extinction.reset();
 }
 
 namespace {
@@ -277,16 +280,26 @@ Scene resolved_alone(const SceneDocument& document, const Volume& volume, std::s
 
 }  // namespace
 
+bool cuts(const SceneDocument& entry) {
+    return entry.volume.rule == VolumeRule::Cut;
+}
+
 Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
-    Scene scene = resolved_alone(document, volume, 0);
+    Scene scene = resolved_alone(document, document.whole ? *document.whole : volume, 0);
     for (std::size_t i = 0; i < document.volumes.size(); ++i) {
         const SceneDocument& entry = document.volumes[i];
         if (!entry.read) fail("volumes[{}]: {} is not read", i, entry.volume.path);
+        if (cuts(entry)) {
+            if (entry.volume.visible && !document.whole)
+                fail("volumes[{}]: {} has not cut the others", i, entry.volume.path);
+            continue;
+        }
         try {
             Scene one = resolved_alone(entry, *entry.read->volume, i + 1);
-            scene.added.push_back({entry.read->volume, std::move(one.iso_values), std::move(one.materials),
-                                   std::move(one.transfer), std::move(one.label_colors), one.clipped,
-                                   entry.volume.rule == VolumeRule::Inside && entry.volume.visible, entry.volume.rim});
+            scene.added.push_back({entry.cut ? entry.cut : entry.read->volume, std::move(one.iso_values),
+                                   std::move(one.materials), std::move(one.transfer), std::move(one.label_colors),
+                                   one.clipped, entry.volume.rule == VolumeRule::Inside && entry.volume.visible,
+                                   entry.volume.rim});
         } catch (const Error& error) {
             fail("volumes[{}]: {}", i, error.what());
         }
@@ -362,7 +375,8 @@ std::vector<AnimatedParameter> resolve_animation(const SceneDocument& document) 
 namespace {
 
 void write_out_matter(SceneDocument& document, const Scene& scene, const Volume& volume) {
-    document.volume.checksum = fmt::format("{:016x}", volume.checksum);
+    const Volume& whole = document.whole ? *document.whole : volume;
+    document.volume.checksum = fmt::format("{:016x}", whole.checksum);
     write_out_materials(document, scene, volume);
     document.iso_sigmas.clear();
     document.transfer = scene.transfer;
@@ -380,24 +394,27 @@ SceneDocument resolved(const SceneDocument& document, const Volume& volume, cons
         return document.volume.*flag &&
                std::ranges::all_of(document.volumes, [&](const SceneDocument& d) { return d.volume.*flag; });
     };
-    if (!all(&VolumeSource::visible) || !all(&VolumeSource::clip)) {
-        // What is not shown keeps its matter, and planes that do not cut stay.
+    if (!all(&VolumeSource::visible) || !all(&VolumeSource::clip) || std::ranges::any_of(document.volumes, cuts)) {
+        // What is not shown keeps its matter, and planes that do not clip stay.
         SceneDocument shown = document;
         shown.volume.visible = shown.volume.clip = true;
-        for (SceneDocument& entry : shown.volumes)
+        for (SceneDocument& entry : shown.volumes) {
             entry.volume.visible = entry.volume.clip = true;
+            if (cuts(entry)) entry.volume.rule = VolumeRule::Add;
+        }
         result = resolved(shown, volume, resolve_scene(shown, volume), camera, settings);
         result.volume.visible = document.volume.visible;
         result.volume.clip = document.volume.clip;
         for (std::size_t i = 0; i < result.volumes.size(); ++i) {
             result.volumes[i].volume.visible = document.volumes[i].volume.visible;
             result.volumes[i].volume.clip = document.volumes[i].volume.clip;
+            result.volumes[i].volume.rule = document.volumes[i].volume.rule;
         }
         return result;
     }
     write_out_matter(result, scene, volume);
     for (std::size_t i = 0; i < result.volumes.size(); ++i)
-        write_out_matter(result.volumes[i], scene_of_volume(scene, i + 1), *scene.added[i].volume);
+        write_out_matter(result.volumes[i], scene_of_volume(scene, i + 1), *document.volumes[i].read->volume);
     result.ambient = scene.ambient;
     result.lights = scene.lights;
     result.lit = scene.lit;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/error.h"
+#include "engine/scene/cuts.h"
 #include "engine/scene/label_choice.h"
 #include "engine/scene/scene_document.h"
 #include "engine/scene/scene_presets.h"
@@ -146,6 +147,15 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     return preprocessed(read_source(source, folders, progress), source);
 }
 
+namespace {
+
+Volume cut_volume(SceneDocument& document, Volume volume) {
+    if (std::ranges::none_of(document.volumes, cuts)) return volume;
+    return *Cuts().apply(document, std::make_shared<const Volume>(std::move(volume)));
+}
+
+}  // namespace
+
 Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
     Volume samples = read_source(document.volume, folders, progress);
     const VolumeSource reading = reading_part(document.volume);
@@ -153,11 +163,11 @@ Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& f
     if (std::ranges::none_of(document.volumes, reads_them)) {
         Volume volume = prepared_volume(document, std::move(samples));
         read_volumes(document, folders, progress);
-        return volume;
+        return cut_volume(document, std::move(volume));
     }
     Volume volume = prepared_volume(document, samples);
     read_volumes(document, folders, progress, &samples);
-    return volume;
+    return cut_volume(document, std::move(volume));
 }
 
 void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress,
@@ -170,15 +180,32 @@ void read_volumes(SceneDocument& document, const std::vector<fs::path>& folders,
         source.rim = 0;
         return std::pair(source, entry.iso_values);
     };
+    const auto is_as_it_was = [&](const SceneDocument& entry, const VolumeSource& source) {
+        return entry.read && std::pair(source, entry.read->iso_values) == what_is_read(entry);
+    };
     for (std::size_t i = 0; i < document.volumes.size(); ++i) {
         SceneDocument& entry = document.volumes[i];
-        if (entry.read && std::pair(entry.read->source, entry.read->iso_values) == what_is_read(entry)) continue;
+        if (entry.read && is_as_it_was(entry, entry.read->source)) continue;
         try {
-            const bool is_read = first && reading_part(entry.volume) == reading_part(document.volume);
-            Volume volume = prepared_volume(entry, is_read ? *first : read_source(entry.volume, folders, progress));
-            const auto [source, iso_values] = what_is_read(entry);
-            entry.read = std::make_shared<const ReadVolume>(
-                ReadVolume{source, iso_values, std::make_shared<const Volume>(std::move(volume))});
+            SceneDocument still = entry;
+            still.volume.transform.clear();
+            VolumeSource before = entry.read ? entry.read->source : VolumeSource();
+            before.transform.clear();
+            Volume volume;
+            if (is_as_it_was(still, before)) {
+                volume = *entry.read->volume;
+                volume.geometry = entry.read->still;
+            } else {
+                const bool is_read = first && reading_part(entry.volume) == reading_part(document.volume);
+                volume = prepared_volume(still, is_read ? *first : read_source(entry.volume, folders, progress));
+            }
+            const VolumeGeometry geometry = volume.geometry;
+            still.volume.transform = entry.volume.transform;
+            if (!still.volume.transform.empty()) move(volume.geometry, matrix_of_rows(still.volume.transform));
+            entry = std::move(still);
+            auto [source, iso_values] = what_is_read(entry);
+            entry.read = std::make_shared<const ReadVolume>(ReadVolume{
+                std::move(source), std::move(iso_values), geometry, std::make_shared<const Volume>(std::move(volume))});
         } catch (const Error& error) {
             fail("volumes[{}]: {}", i, error.what());
         }
@@ -204,18 +231,23 @@ void set_open_iso_values(SceneDocument& document, const Volume& volume) {
     document.iso_sigmas.clear();
 }
 
-namespace {
-
-/// The lowest value of visible matter, in the samples' unit.
 double lowest_matter(const SceneDocument& document, const Volume& volume) {
     const Scene scene = scene_of_first(document, volume);
+    if (!scene.transfer.empty()) {
+        const auto first =
+            std::ranges::find_if(scene.transfer, [](const TransferPoint& p) { return p.extinction > 0; });
+        if (first == scene.transfer.begin())
+            fail("{}: its transfer function makes matter of the lowest values; expected an extinction of 0 at them",
+                 volume.name);
+        return std::prev(first)->value;
+    }
+    if (scene.materials.front().extinction > 0)
+        fail("{}: below the lowest iso-value it has matter; expected an extinction of 0 there", volume.name);
     std::size_t lowest = 0;
     while (lowest + 1 < scene.iso_values.size() && !(scene.materials[lowest + 1].extinction > 0))
         ++lowest;
     return scene.iso_values[lowest];
 }
-
-}  // namespace
 
 Volume prepared_volume(SceneDocument& document, Volume volume) {
     const bool open = !document.volume.labels;

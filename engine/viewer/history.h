@@ -31,6 +31,15 @@ class History {
         at_ = states_.size() - 1;
     }
 
+    /// Replaces the current state without a step.
+    void amend(State state) { (dragged_ ? *dragged_ : states_[at_]) = std::move(state); }
+    /// Calls change(state) for all states but the current one.
+    template <typename Change>
+    void for_others(const Change& change) {
+        for (State& state : states_)
+            if (&state != &now()) change(state);
+    }
+
     /// Whether the current state is an intermediate one.
     bool has_pending_edit() const { return dragged_.has_value(); }
     bool can_undo() const { return at_ > 0 || dragged_; }

@@ -32,8 +32,9 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
     }
     Volume volume = small_labels_in_memory(read_source(out.document.volume, out.folders, progress));
     if (labels_of(volume) && !volume.packed) out.samples = std::make_shared<const Volume>(volume);
-    out.volume = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));
+    out.whole = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));
     read_volumes(out.document, out.folders, progress, out.samples.get());
+    out.volume = out.cuts.apply(out.document, out.whole);
     return out;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/cuts.h"
 #include "engine/scene/scene_document.h"
 
 namespace edgesplat::viewer {
@@ -18,7 +19,9 @@ struct Opened {
     std::string path;  ///< as requested
     SceneDocument document;
     std::vector<std::filesystem::path> folders;  ///< folders that were searched for the volume
-    std::shared_ptr<const Volume> volume;        ///< preprocessed
+    std::shared_ptr<const Volume> whole;         ///< preprocessed
+    std::shared_ptr<const Volume> volume;        ///< the same as others cut it
+    Cuts cuts;                                   ///< which did
     std::shared_ptr<const Volume> samples;       ///< as read, if it is a segmentation or has one; else null
 };
 

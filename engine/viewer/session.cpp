@@ -50,6 +50,7 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     document.keep_box = open.keep_box;
     document.remove_box = open.remove_box;
     document.movie = open.movie;
+    Scene shown = resolve_scene(document, *opened.volume);
     opened_ = std::move(opened);
     drawn_ = document;
     history_.emplace(std::move(document));
@@ -62,7 +63,7 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     clear_picks();
     walls_.reset();
     message_.clear();
-    apply(current_scene());
+    apply(std::move(shown));
     const glm::dvec3 index = opened_.volume->geometry.to_index(camera.eye);
     const bool inside = glm::all(glm::greaterThan(index, glm::dvec3(0))) &&
                         glm::all(glm::lessThan(index, glm::dvec3(opened_.volume->geometry.dims - 1)));
@@ -88,11 +89,22 @@ std::shared_ptr<const Volume> Session::relabelled(SceneDocument& document) const
 
 void Session::follow_document() {
     SceneDocument document = history_->now();
-    if (auto volume = relabelled(document)) {
-        opened_.volume = std::move(volume);
+    if (auto whole = relabelled(document)) {
+        opened_.whole = std::move(whole);
         drawn_ = document;
     }
+    opened_.volume = opened_.cuts.apply(document, opened_.whole);
+    history_->amend(std::move(document));
+    forget_cuts();
     apply(current_scene());
+}
+
+void Session::forget_cuts() {
+    history_->for_others([](SceneDocument& document) {
+        document.whole = nullptr;
+        for (SceneDocument& entry : document.volumes)
+            entry.cut = nullptr;
+    });
 }
 
 Scene Session::current_scene() const {
@@ -112,24 +124,27 @@ void Session::apply(Scene scene, bool seen) {
 void Session::edit(const std::function<void(SceneDocument&)>& change, bool finished) {
     SceneDocument document = history_->now();
     Scene scene;
-    std::shared_ptr<const Volume> volume;
+    std::shared_ptr<const Volume> whole, volume;
     try {
         change(document);
         validate(document.quality.settings);
-        volume = relabelled(document);
+        whole = relabelled(document);
         read_volumes(document, opened_.folders, {}, opened_.samples.get());
-        scene = resolve_scene(document, volume ? *volume : *opened_.volume);
+        volume = opened_.cuts.apply(document, whole ? whole : opened_.whole);
+        scene = resolve_scene(document, *volume);
     } catch (const Error& error) {
         message_ = error.what();
         return;
     }
     const SceneDocument& now = history_->now();
     const bool same = document == now, seen = !same && !(with_quality_of(now, document) == now);
-    if (volume) {
-        opened_.volume = std::move(volume);
+    opened_.volume = std::move(volume);
+    if (whole) {
+        opened_.whole = std::move(whole);
         drawn_ = document;
     }
     history_->change(std::move(document), finished);
+    forget_cuts();
     if (!same) apply(std::move(scene), seen);
 }
 

@@ -111,12 +111,14 @@ class Session {
     std::shared_ptr<const Volume> relabelled(SceneDocument& document) const;
     /// Takes over the volume of the document after an undo or redo.
     void follow_document();
+    /// Of all states but the current one, cuts are made again when they are needed.
+    void forget_cuts();
     void find_walls();
     void poll();
 
     bool wait_;
     Opened opened_;
-    SceneDocument drawn_;  ///< whose labels `opened_.volume` shows
+    SceneDocument drawn_;  ///< whose labels `opened_.whole` shows
     std::optional<History<SceneDocument>> history_;
     Scene scene_;
     std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< change with every scene or quality; with every scene

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/scene/cuts.h"
 #include "engine/scene/scene_document.h"
 #include "engine/volume/volume.h"
 
@@ -46,6 +47,7 @@ SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::p
 struct Document {
     SceneDocument scene;
     std::vector<std::filesystem::path> folders;
+    Cuts cuts{};
 };
 
 inline Triple triple(const glm::dvec3& v) {

@@ -76,12 +76,9 @@ Document read(const std::string& path) {
     return {read_scene_file(path), volume_folders(std::filesystem::path(path).parent_path())};
 }
 
-/// The volume after the scene's preprocessing: threshold or labels, box filter, crop. If labels of a scan are chosen,
-/// open iso-values of the scene become those of the whole scan.
-SharedVolume prepared(Document& self, const SharedVolume& given) {
-    const py::gil_scoped_release release;
-    const bool same = reading_part(self.scene.volume) == given.source;
-    read_volumes(self.scene, self.folders, {}, same ? given.volume.get() : nullptr);
+/// The volume after the scene's preprocessing: threshold or labels, box filter, crop. `self` must be read. If labels of
+/// a scan are chosen, open iso-values of the scene become those of the whole scan.
+SharedVolume preprocessed_for(Document& self, const SharedVolume& given) {
     if (given.volume->has_segmentation() && chooses_labels(self.scene.volume))
         set_open_iso_values(self.scene, *given.volume);
     SceneDocument scene = self.scene;
@@ -108,6 +105,16 @@ SharedVolume prepared(Document& self, const SharedVolume& given) {
         given.latest->volume = std::make_shared<const Volume>(prepared_volume(scene, *volume));
     }
     return {given.latest->volume, given.source, given.latest};
+}
+
+/// The volume as the scene draws it: preprocessed, and cut by others.
+SharedVolume prepared(Document& self, const SharedVolume& given) {
+    const py::gil_scoped_release release;
+    const bool same = reading_part(self.scene.volume) == given.source;
+    read_volumes(self.scene, self.folders, {}, same ? given.volume.get() : nullptr);
+    SharedVolume drawn = preprocessed_for(self, given);
+    drawn.volume = self.cuts.apply(self.scene, drawn.volume);
+    return drawn;
 }
 
 }  // namespace

@@ -221,6 +221,11 @@ def test_several_volumes(tmp_path, ball):
     again = edgesplat.render(ball, scene, camera=edgesplat.Camera(eye=(4, -60, 5), target=(9, 0, 5)))
     red = again.color[..., 0] > 2 * again.color[..., 2]
     assert red[:, 20:].sum() > 20 > red[:, :12].sum()
+    scene["volumes[0].volume.rule"] = "cut"
+    cut = edgesplat.render(ball, scene, view="front")
+    assert not np.array_equal(one.color, cut.color)
+    assert np.array_equal(cut.color, edgesplat.render(ball, scene, view="front").color)
+    assert np.array_equal(cut.color, edgesplat.render(ball, cut.scene).color)
     with pytest.raises(Error, match=r"volumes: a int: expected a path or a dict"):
         Scene(volumes=[3])
     with pytest.raises(Error, match=r"volumes\[0\].camera"):

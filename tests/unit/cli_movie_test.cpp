@@ -224,6 +224,40 @@ TEST_F(CliMovie, AnimatesTheFileAsWholeNumbers) {
     EXPECT_NE(pixels("f/3.png"), pixels("0.png"));
 }
 
+// A ball that cuts a box moves.
+TEST_F(CliMovie, MovesWhatCuts) {
+    std::ofstream(folder_ / "s.toml") << R"(
+iso_values = [0.5]
+[volume]
+path = "builtin:box:20"
+[[volumes]]
+volume.path = "builtin:sphere:20"
+volume.rule = "cut"
+volume.transform = [1,0,0,0, 0,1,0,-8, 0,0,1,0, 0,0,0,1]
+[camera]
+eye = [10, -40, 10]
+target = [10, 0, 10]
+[output]
+size = [32, 24]
+[movie]
+fps = 10
+[[movie.animate]]
+key = "volumes[0].volume.transform[3]"
+times = [0, 0.3]
+values = [0, 9]
+)";
+    good("movie s.toml -o f/%d.png");
+    EXPECT_EQ(frames("f").size(), 3U);
+    good("render s.toml -o first.png");
+    good("render s.toml -o last.png --set volumes[0].volume.transform=1,0,0,6,0,1,0,-8,0,0,1,0,0,0,0,1");
+    good("render s.toml -o whole.png --set volumes[0].volume.visible=false");
+    const auto pixels = [&](const char* name) { return read_image(folder_ / name).image.pixels; };
+    EXPECT_EQ(pixels("f/0.png"), pixels("first.png"));
+    EXPECT_EQ(pixels("f/2.png"), pixels("last.png"));
+    EXPECT_NE(pixels("f/2.png"), pixels("first.png"));
+    EXPECT_NE(pixels("whole.png"), pixels("first.png"));
+}
+
 TEST_F(CliMovie, RefusesInvalidMovies) {
     const auto says = [&](const std::string& arguments, const char* what) {
         const ProgramRun result = run(arguments);

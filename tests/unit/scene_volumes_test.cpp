@@ -1,10 +1,12 @@
 // Reads, writes and resolves scenes with several volumes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/cuts.h"
 #include "engine/scene/default_materials.h"
 #include "engine/scene/label_fade.h"
 #include "engine/scene/scene_file.h"
@@ -251,6 +253,91 @@ TEST(SceneVolumes, GiveWayAlongRims) {
     EXPECT_DOUBLE_EQ(rim(0).width, 1);
     scene.added[0].replaces = false;
     EXPECT_FALSE(rim(0).any() || rim(1).any());
+}
+
+constexpr const char* kCutText = R"(
+iso_values = [0.5]
+[volume]
+path = "builtin:box:20"
+opacity = 0.5
+[[volumes]]
+volume.path = "builtin:sphere:20"
+volume.rule = "cut"
+volume.transform = [1,0,0,4, 0,1,0,0, 0,0,1,0, 0,0,0,1]
+[[volumes]]
+iso_values = [0.4]
+volume.path = "builtin:torus:20"
+)";
+
+/// A volume that cuts is not drawn; matter of the others does not depend on it otherwise.
+TEST(SceneVolumes, CutTheOthers) {
+    Volume first;
+    SceneDocument document = read(kCutText, first);
+    const auto box = std::make_shared<const Volume>(builtin_volume("builtin:box:20"));
+    EXPECT_NE(first.checksum, box->checksum);
+    EXPECT_EQ(document.whole->checksum, box->checksum);
+    const Scene scene = resolve_scene(document, first);
+    ASSERT_EQ(scene.added.size(), 1U);
+    EXPECT_EQ(scene.added[0].volume, document.volumes[1].cut);
+    EXPECT_NE(scene.added[0].volume->checksum, document.volumes[1].read->volume->checksum);
+    EXPECT_THAT(scene.added[0].iso_values, ElementsAre(0.4));
+    const Cutter ball{document.volumes[0].read->volume, 0.5};
+    EXPECT_EQ(first.checksum, without_solids(*box, 0.5, {&ball, 1}).checksum);
+
+    Cuts cuts;
+    const auto cut = cuts.apply(document, box);
+    EXPECT_EQ(cut->checksum, first.checksum);
+    EXPECT_EQ(cuts.apply(document, box), cut) << "cut once";
+    SceneDocument hidden = document;
+    hidden.volumes[0].volume.visible = false;
+    EXPECT_EQ(Cuts().apply(hidden, box), box);
+    const Scene whole = resolve_scene(hidden, *box);
+    EXPECT_EQ(whole.materials, scene.materials) << "the opacity is that of the whole volume";
+    EXPECT_EQ(whole.added[0].volume, document.volumes[1].read->volume);
+    document.volumes[0].volume.transform[3] = 5;
+    read_volumes(document, {});
+    SceneDocument again = parse(kCutText);
+    again.volumes[0].volume.transform[3] = 5;
+    load_scene_volume(again, {});
+    EXPECT_EQ(document.volumes[0].read->volume->geometry.origin, again.volumes[0].read->volume->geometry.origin);
+    EXPECT_EQ(document.volumes[0].read->source, again.volumes[0].read->source);
+    EXPECT_NE(cuts.apply(document, box), cut);
+    document.volumes.pop_back();
+    EXPECT_NE(cuts.apply(document, box)->checksum, box->checksum);
+    EXPECT_EQ(raycast_obstacle(resolve_scene(document, *box)), "");
+}
+
+TEST(SceneVolumes, ThatCutAreWrittenOut) {
+    Volume first;
+    const SceneDocument document = read(kCutText, first);
+    const Scene scene = resolve_scene(document, first);
+    const Camera camera = resolve_camera(document, first, scene);
+    SceneDocument again = parse(scene_text(resolved(document, first, scene, camera, document.quality.settings)));
+    EXPECT_EQ(again.volumes[0].volume.rule, VolumeRule::Cut);
+    const Volume same = load_scene_volume(again, {});
+    EXPECT_EQ(same.checksum, first.checksum);
+    EXPECT_EQ(resolve_scene(again, same).added[0].volume->checksum, scene.added[0].volume->checksum);
+    EXPECT_EQ(resolve_scene(again, same).materials, scene.materials);
+}
+
+TEST(SceneVolumes, ThatCutNeedValuesWithoutMatter) {
+    EXPECT_THAT(problems("volume.path = \"builtin:sphere\"\nvolume.rule = \"cut\"\n"),
+                Contains(AllOf(HasSubstr("a.toml:2: volume.rule"), HasSubstr("\"cut\""))));
+    const std::string cutter = "[[volumes]]\nvolume.path = \"builtin:sphere:20\"\nvolume.rule = \"cut\"\n";
+    EXPECT_THAT(problems("volume.path = \"builtin:box\"\noutput.renderer = \"raycast\"\n" + cutter),
+                testing::IsEmpty());
+    EXPECT_THAT(problems("volume.path = \"builtin:box\"\noutput.renderer = \"truth\"\n" + cutter),
+                Contains(HasSubstr("others cut it")));
+    const auto refused = [&](const std::string& matter) {
+        Volume first;
+        return refusal([&] { read("volume.path = \"builtin:box:20\"\n" + matter + cutter, first); });
+    };
+    EXPECT_THAT(refused("below.extinction = 1\niso_values = [0.5]\n"), HasSubstr("below the lowest iso-value"));
+    const auto point = [](double value, double extinction) {
+        return fmt::format("[[transfer]]\nvalue = {}\ncolor = [1, 1, 1]\nextinction = {}\n", value, extinction);
+    };
+    EXPECT_THAT(refused(point(0, 1) + point(1, 2)), HasSubstr("lowest values"));
+    EXPECT_EQ(refused(point(0, 0) + point(0.2, 0) + point(1, 2)), "");
 }
 
 /// A named view frames the matter of all volumes.
