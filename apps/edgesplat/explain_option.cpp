@@ -68,6 +68,9 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
                             {"bytes", row.bytes},
                             {"obstacle", row.obstacle}});
     }
+    auto of_volumes = ordered_json::array();
+    for (const auto& [name, bytes] : d.volumes)
+        of_volumes.push_back({{"name", name}, {"bytes", bytes}});
     return {{"device_profile", d.profile},
             {"device_profile_reason", d.profile_reason},
             {"splats", d.splats},
@@ -75,6 +78,7 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
             {"sheets", d.sheets},
             {"sheet_groups", d.sheet_groups},
             {"total_bytes", d.total_bytes()},
+            {"volumes", of_volumes},
             {"effects", effects},
             {"passes", passes},
             {"resources", resources},

@@ -157,7 +157,9 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     std::erase_if(effects, [&](const auto& entry) { return !runs(*entry.first, out.passes); });
     for (PassDescription& pass : out.passes)
         pass.reason = reason_for(effects, pass.name, &Effect::passes);
+    std::map<std::size_t, std::uint64_t> of_volumes;
     for (const PlannedResource& resource : forecast.resources) {
+        if (resource.volume) of_volumes[*resource.volume] += resource.bytes;
         const auto same = std::ranges::find_if(out.resources, [&](const ResourceDescription& r) {
             return r.name == resource.text.name && r.held == name_of(resource.held);
         });
@@ -178,6 +180,8 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
                                 name_of(resource.held)};
         out.resources.push_back(std::move(row));
     }
+    for (const auto& [number, bytes] : of_volumes)
+        if (of_volumes.size() > 1) out.volumes.emplace_back(request_of_volume(request, number).volume->name, bytes);
     out.record = {
         {"voxel", "every picture", 4}, {"normal", "every picture", 4}, {"edge, material", "every picture", 4}};
     for (const auto& [effect, reason] : effects) {

@@ -58,6 +58,7 @@ struct FrameDescription {
     std::uint32_t sheets = 0, sheet_groups = 0;
     std::vector<PassDescription> passes;  ///< in execution order
     std::vector<ResourceDescription> resources;
+    std::vector<std::pair<std::string, std::uint64_t>> volumes;  ///< of several: their names and bytes of `resources`
     std::vector<RecordDescription> record;
     std::vector<std::pair<std::string, std::string>> active_effects;  ///< (effect, reason)
     std::vector<LeftOut> left_out;

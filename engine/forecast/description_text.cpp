@@ -79,6 +79,8 @@ std::string to_text(const FrameDescription& d) {
                     r.transient() ? "only " + r.held : r.reason});
     }
     memory.row({mebibytes(static_cast<double>(d.total_bytes())), "peak"});
+    for (const auto& [name, bytes] : d.volumes)
+        memory.row({mebibytes(static_cast<double>(bytes)), "of it " + name});
     text += memory.text();
 
     std::uint32_t bytes = 0;

@@ -39,6 +39,7 @@ struct PlannedResource {
     gpu::Buffer::Place place = gpu::Buffer::Place::Device;
     bool grows = false;  ///< a larger one of an earlier frame is reused
     Held held = Held::Always;
+    std::optional<std::size_t> volume;  ///< FrameRequest::number of the volume that it holds; none: the picture's
 };
 
 /// One draw of the splats: the picture first, then the extra outputs.

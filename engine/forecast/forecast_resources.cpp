@@ -99,10 +99,19 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::map<std::size_t, std::vector<const FrameForecast*>> volumes;
     for (const FrameForecast* part : parts)
         volumes[part->number].push_back(part);
-    for (const auto& [number, of_volume] : volumes)
+    const auto belongs_to = [&out](std::size_t number, std::size_t first) {
+        for (std::size_t i = first; i < out.size(); ++i)
+            out[i].volume = number;
+    };
+    for (const auto& [number, of_volume] : volumes) {
+        const std::size_t first = out.size();
         add_volume_images(of_volume, out);
+        belongs_to(number, first);
+    }
     for (const FrameForecast* part : parts) {
+        const std::size_t first = out.size();
         add_lists(*part, out);
+        belongs_to(part->number, first);
         for (const ForecastDraw& draw : part->draws)
             draws.push_back(draw.plan);
     }

@@ -119,8 +119,10 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
     std::map<std::pair<std::string, Held>, std::pair<std::uint64_t, const PlannedResource*>> merged;
     for (const PlannedResource& resource : forecast.resources) {
         auto& [bytes, one] = merged[{resource.text.name, resource.held}];
-        bytes += bytes_on(device, resource, need);
+        const std::uint64_t own = bytes_on(device, resource, need);
+        bytes += own;
         one = &resource;
+        if (resource.volume) need.of_volumes[*resource.volume] += own;
     }
     std::uint64_t kept = device.allocated_bytes();
     bool uploads = false;  // data already on the device needs no staging buffer
@@ -251,6 +253,10 @@ void refuse_memory(const gpu::Device& device, const FrameRequest& request, const
         rest -= std::min(rest, need.rows[i].needed);
     }
     text += fmt::format("\n  {:<22} {:>10.2f} MiB", "everything else", mebibytes(rest));
+    if (need.of_volumes.size() > 1)
+        for (const auto& [number, bytes] : need.of_volumes)
+            text += fmt::format("\n  {:>10.2f} MiB of it for {}", mebibytes(bytes),
+                                request_of_volume(request, number).volume->name);
     const auto changes = fitting_changes(device, request, budget);
     text += changes.empty() ? "\nno smaller picture or part of this volume fits" : "\neach of these changes fits:";
     for (const FittingChange& change : changes)

@@ -1,6 +1,7 @@
 // Tests whether a frame fits into the device's memory before anything is allocated, and finds changes that fit.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct MemoryNeed {
         std::uint64_t needed = 0;  ///< bytes, rounded up by the device
         std::uint64_t held = 0;    ///< bytes allocated under this name now
     };
-    std::vector<Row> rows;               ///< largest first
+    std::vector<Row> rows;  ///< largest first
+    /// Bytes of each volume by FrameRequest::number; the others are the picture's.
+    std::map<std::size_t, std::uint64_t> of_volumes;
     std::uint64_t total = 0;             ///< peak bytes, including this renderer's other resources
     std::uint64_t available = 0;         ///< upper limit of `total`, bytes
     std::string limited_by;              ///< "the memory budget", "the free memory of heap 0 of ..."

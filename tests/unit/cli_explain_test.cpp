@@ -60,6 +60,34 @@ TEST_F(CliExplain, NamesDeviceProfile) {
     EXPECT_THAT(wrong.err, HasSubstr("device profile `fast`: expected lavapipe, generic or discrete"));
 }
 
+TEST_F(CliExplain, NamesTheShareOfEachVolume) {
+    const ProgramRun done =
+        run("render builtin:sphere:32 builtin:torus:16 --size 40x30 --explain -o a.png --json a.json -q");
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("of it builtin:torus"));
+    const auto plan = nlohmann::json::parse(text_of(folder_ / "a.json"))["plan"];
+    const auto& volumes = plan["volumes"];
+    ASSERT_EQ(volumes.size(), 2U);
+    EXPECT_EQ(volumes[0]["name"], "builtin:sphere");
+    std::uint64_t of_volumes = 0, fields = 0, all = 0;
+    for (const auto& volume : volumes)
+        of_volumes += volume["bytes"].get<std::uint64_t>();
+    for (const auto& resource : plan["resources"]) {
+        const auto bytes = resource["bytes"].get<std::uint64_t>();
+        all += bytes;
+        for (const char* name : {"volume", "B-spline coefficients", "edge field", "splat list"})
+            if (resource["name"] == name) fields += bytes;
+    }
+    EXPECT_GT(of_volumes, fields);
+    EXPECT_LT(of_volumes, all);
+    EXPECT_GT(volumes[0]["bytes"].get<std::uint64_t>(), 6 * volumes[1]["bytes"].get<std::uint64_t>());
+    const ProgramRun refused =
+        run("render builtin:sphere:32 builtin:torus:16 --size 400x300 --memory-budget 4 -o b.png");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err, HasSubstr("MiB of it for builtin:torus"));
+    EXPECT_THAT(run("render builtin:sphere:32 --explain").out, Not(HasSubstr("of it")));
+}
+
 TEST_F(CliExplain, RequiresOutputOrExplain) {
     const ProgramRun wrong = run("render builtin:sphere:24");
     EXPECT_EQ(wrong.status, 2);
