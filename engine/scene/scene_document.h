@@ -199,6 +199,8 @@ bool chooses_labels(const VolumeSource& source);
 
 /// What decides the samples that read_source reads, and where they lie.
 VolumeSource reading_part(const VolumeSource& source);
+/// Gives a source the reading_part of another one.
+void read_as(VolumeSource& source, const VolumeSource& other);
 
 /// Finds and reads the volume, with its segmentation and the names of its labels, without preprocessing. Throws Error.
 Volume read_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,

@@ -90,20 +90,24 @@ void move(VolumeGeometry& geometry, const glm::dmat4& matrix) {
 
 }  // namespace
 
+void read_as(VolumeSource& source, const VolumeSource& other) {
+    source.path = other.path;
+    source.raw = other.raw;
+    source.series = other.series;
+    source.component = other.component;
+    source.frame = other.frame;
+    source.level = other.level;
+    source.resample = other.resample;
+    source.spacing = other.spacing;
+    source.no_data = other.no_data;
+    source.segmentation = other.segmentation;
+    source.label_names = other.label_names;
+    source.registration = other.registration;
+}
+
 VolumeSource reading_part(const VolumeSource& source) {
     VolumeSource part;
-    part.path = source.path;
-    part.raw = source.raw;
-    part.series = source.series;
-    part.component = source.component;
-    part.frame = source.frame;
-    part.level = source.level;
-    part.resample = source.resample;
-    part.spacing = source.spacing;
-    part.no_data = source.no_data;
-    part.segmentation = source.segmentation;
-    part.label_names = source.label_names;
-    part.registration = source.registration;
+    read_as(part, source);
     return part;
 }
 

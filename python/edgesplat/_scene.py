@@ -162,7 +162,10 @@ class Scene:
         ``view="back"``, ``color="tomato"``, ``extinction=8``, ``transfer="ct-muscle-bone"``.
 
     ``volumes`` lists volumes beside the first one, each a path or a dict of its own keys:
-    ``Scene(volumes=[{"volume.path": "tumour.nii.gz", "color": "tomato"}])``.
+    ``Scene(volumes=[{"volume.path": "tumour.nii.gz", "color": "tomato"}])``. One without a path is of the first one's file or
+    array.
+
+    ``fade`` draws labels translucent, by number or name: ``fade={"skin": 0.3, 7: 0.5}``, as ``--fade``.
 
     A colour is three numbers in linear light, a name of CSS or ``"#rrggbb"``. A transfer function is a list of points, a
     preset's name, or a colour map: ``transfer={"map": "viridis", "range": (0, 500), "extinction": (0, 2)}``, where the map is
@@ -191,12 +194,16 @@ class Scene:
         changed = self._core.copy()
         everything = {**(content or {}), **keys}
         # The look and the preset come first, because the other keys override them.
-        look = everything.pop("look", None)
+        look, faded = everything.pop("look", None), everything.pop("fade", None)
         if look is not None:
             changed.apply_look(look)
         wanted = sorted(_assignments(_with_names(everything)), key=lambda one: one[0] != "quality.preset")
         for path, value in wanted:
             changed.set(f"{path}={_toml(value, path)}")
+        for labels, opacity in dict(faded or {}).items():
+            if not isinstance(opacity, (int, float)) or not 0 < opacity <= 1:
+                raise Error(f"fade: {labels!r}: {opacity!r}: expected an opacity above 0 up to 1")
+            changed.fade(str(labels), float(opacity))
         self._core = changed
 
     def __getitem__(self, key: str) -> Any:

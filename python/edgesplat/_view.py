@@ -146,7 +146,7 @@ class View:
         scene = Scene(self._scene)
         scene["iso_values"] = list(values)
         for problem in scene.problems():
-            if not problem.startswith("volume.path: "):  # an array has no file
+            if not problem.partition(": ")[0].endswith("volume.path"):  # an array has no file
                 raise Error(problem)
         self._scene = scene
         self._changed()

@@ -44,12 +44,13 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     scene.volume.crop_high = asked.crop_high;
     scene.volume.transform = asked.transform;
     scene.volume.visible = asked.visible;
+    scene.volume.opacity = asked.opacity;
     scene.volume.clip = asked.clip;
     check_cpu_request(scene);
     validate(scene.quality.settings);
     std::string text;
     for (const DocumentProblem& problem : problems_of(scene, document.folders))
-        if (problem.path != "volume.path")  // an array has no file
+        if (!problem.path.ends_with("volume.path"))  // an array has no file, and the others are read
             text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
     if (!text.empty()) fail("{}", text);
     return scene;

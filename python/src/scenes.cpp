@@ -1,5 +1,6 @@
 // Scenes: access to every key of a scene file, with the same error messages as files and the command line.
 #include "engine/error.h"
+#include "engine/scene/label_fade.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/scene_presets.h"
@@ -107,11 +108,27 @@ SharedVolume preprocessed_for(Document& self, const SharedVolume& given) {
     return {given.latest->volume, given.source, given.latest};
 }
 
+/// Reads the volumes beside the first one. An entry without a path is of the first one's file, or array.
+void read_others(Document& self, const SharedVolume& given) {
+    SceneDocument scene = self.scene;
+    const std::string& names = self.scene.volume.label_names;
+    scene.volume = given.source;
+    Volume named;
+    if (!names.empty() && names != given.source.label_names) {
+        scene.volume.label_names = names;
+        named = *given.volume;
+        name_labels(named, find_file(names, self.folders));
+    }
+    for (SceneDocument& entry : scene.volumes)
+        if (entry.volume.path.empty()) read_as(entry.volume, scene.volume);
+    read_volumes(scene, self.folders, {}, named.values.empty() ? given.volume.get() : &named);
+    self.scene.volumes = std::move(scene.volumes);
+}
+
 /// The volume as the scene draws it: preprocessed, and cut by others.
 SharedVolume prepared(Document& self, const SharedVolume& given) {
     const py::gil_scoped_release release;
-    const bool same = reading_part(self.scene.volume) == given.source;
-    read_volumes(self.scene, self.folders, {}, same ? given.volume.get() : nullptr);
+    if (!self.scene.volumes.empty()) read_others(self, given);
     SharedVolume drawn = preprocessed_for(self, given);
     drawn.volume = self.cuts.apply(self.scene, drawn.volume);
     return drawn;
@@ -129,6 +146,8 @@ void add_scenes(py::module_& module) {
         .def("copy", [](const Document& self) { return self; })
         .def("set", [](Document& self, const std::string& assignment) { set_key(self.scene, assignment); })
         .def("get", value_at)
+        .def("fade", [](Document& self, const std::string& labels,
+                        double opacity) { fade_labels(self.scene, labels, opacity); })
         .def("apply_look", [](Document& self, const std::string& name) { apply_look(self.scene, name); })
         .def("clear_camera", [](Document& self) { self.scene.camera = {}; })
         .def("text", [](const Document& self,

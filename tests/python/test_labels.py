@@ -55,6 +55,24 @@ def test_each_label_is_drawn_in_its_colour(renderer, atlas, names):
     assert '"visual*"' in one.scene.text()
 
 
+def test_labels_fade(renderer, atlas, names):
+    how = dict(lights=[], camera={"direction": (0, 1, 0)}, size=(48, 32))
+    for volume, keys in ((Volume(atlas, label_names=names), {}), (Volume(atlas), {"volume": {"label_names": names}})):
+        whole = renderer.render(volume, **keys, **how)
+        faded = renderer.render(volume, fade={"visual*": 0.5, 997: 1}, **keys, **how)
+        assert 0.2 < faded.color[16, 24, 0] < 0.8 < whole.color[16, 24, 0]
+        assert np.abs(faded.color[16, 14] - whole.color[16, 14]).max() < 0.02
+        scene = edgesplat.Scene(fade={"visual*": 0.5}, **keys)
+        assert scene["volume.hide"] == ["visual*"] and scene["volumes[0].volume.opacity"] == 0.5
+        scene.update(fade={"visual*": 1})
+        assert scene["volumes"] in (0, None) and not scene["volume.hide"]
+        alike = renderer.render(volume, fade={"*": 0.5}, **keys, **how)
+        assert alike.color[16, 24, 0] < 0.8
+    for wrong in (0, 1.5, "half"):
+        with pytest.raises(Error, match=r"fade: 'skin': .* expected an opacity"):
+            edgesplat.Scene(fade={"skin": wrong})
+
+
 def test_what_does_not_fit_is_refused(renderer, atlas):
     with pytest.raises(Error, match="has no label '5'"):
         renderer.render(Volume(atlas), volume={"only": [5]}, size=(16, 16))
