@@ -20,13 +20,29 @@ namespace {
 constexpr int kMaxFrames = 1'000'000;
 constexpr std::string_view kVolumeKeys = "volume.";
 
+/// Sets a number to its value at `time`.
+void animate(SceneDocument& document, const edgesplat::AnimatedParameter& parameter, double time) {
+    const double value = value_at(parameter, time);
+    if (!document.movie.interpolate_frames || !parameter.key.ends_with("volume.frame"))
+        return animate_number(document, parameter.key, value);
+    animate_number(document, parameter.key, std::floor(value));
+    animate_number(document, parameter.key + "_share", value - std::floor(value));
+}
+
 SceneDocument document_at(const Film& film, double time) {
     SceneDocument document = film.document;
     for (const edgesplat::AnimatedParameter& parameter : film.animation)
-        animate_number(document, parameter.key, value_at(parameter, time));
+        animate(document, parameter, time);
     for (SceneDocument& entry : document.volumes)
         entry.volume.checksum.clear();  // that of the first frame
     return document;
+}
+
+/// Surfaces that statistics of the first frame choose are those of all frames.
+void keep_surfaces(Film& film) {
+    if (!film.whole->is_label_mask()) set_open_iso_values(film.document, *film.whole);
+    for (SceneDocument& entry : film.document.volumes)
+        if (!entry.read->volume->is_label_mask()) set_open_iso_values(entry, *entry.read->volume);
 }
 
 /// Reads the volumes that `document` shows, if the renderer holds others.
@@ -54,7 +70,7 @@ void start_volume(SceneDocument& document) {
     const auto& path = document.movie.path;
     for (const edgesplat::AnimatedParameter& parameter : resolve_animation(document))
         if (parameter.key.starts_with(kVolumeKeys))
-            animate_number(document, parameter.key, value_at(parameter, path.empty() ? 0.0 : path.front().time));
+            animate(document, parameter, path.empty() ? 0.0 : path.front().time);
 }
 
 Film film_of(SceneDocument document, const std::vector<std::filesystem::path>& folders,
@@ -65,6 +81,7 @@ Film film_of(SceneDocument document, const std::vector<std::filesystem::path>& f
     film.folders = folders;
     film.whole = film.document.whole ? film.document.whole : std::move(volume);
     film.volume = film.cuts.apply(film.document, film.whole);
+    if (!film.document.movie.animate.empty()) keep_surfaces(film);
     const edgesplat::RendererKind renderer = film.document.output.renderer;
     if (renderer != edgesplat::RendererKind::Splat)
         require_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));

@@ -29,6 +29,7 @@ struct VolumeSource {
     std::string path;                               ///< file, folder, pattern of slices, or builtin:NAME
     std::string raw, series;                        ///< see LoadOptions; empty: not given
     std::optional<int> component, frame, level;     ///< from 0
+    double frame_share = 0;                         ///< of the frame after it, mixed in, [0, 1]
     bool resample = false;                          ///< unevenly spaced DICOM slices are interpolated
     std::optional<glm::dvec3> spacing;              ///< mm, instead of the file's
     std::optional<double> no_data;                  ///< samples with this value contain no data
@@ -121,6 +122,7 @@ struct MovieChoice {
     double fps = 25;
     bool voxel = false;  ///< positions are voxel indices; directions run along the volume's axes
     bool loop = false;
+    bool interpolate_frames = false;  ///< volume.frame between whole numbers mixes two frames
     std::vector<CameraKey> path;
     std::optional<OrbitChoice> orbit;
     std::optional<FlightChoice> flight;

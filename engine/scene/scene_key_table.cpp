@@ -51,6 +51,8 @@ void add_volume(KeyTable& t) {
           {.help = "Component of vector or colour data", .range = {0, 1e6}, .absent = "required for such data"});
     t.add("volume.frame", MEMBER(volume.frame),
           {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "required for such data"});
+    t.add("volume.frame_share", MEMBER(volume.frame_share),
+          {.help = "Share of the frame after it, mixed in: samples between both", .range = kShare});
     t.add("volume.level", MEMBER(volume.level),
           {.help = "Level of an OME-Zarr image, 0: the finest", .range = {0, 63}, .absent = "the finest that fits"});
     t.add("volume.series", MEMBER(volume.series),
@@ -245,6 +247,9 @@ void add_movie(KeyTable& t) {
     t.add("movie.voxel", MEMBER(movie.voxel),
           {.help = "Positions are voxel indices, directions run along the volume's axes"});
     t.add("movie.loop", MEMBER(movie.loop), {.help = "Closed path: the last key repeats the first"});
+    t.add(
+        "movie.interpolate_frames", MEMBER(movie.interpolate_frames),
+        {.help = "With volume.frame animated: samples between two frames are mixed, instead of those of the nearest"});
     t.add("movie.path[].time", MEMBER(movie.path[i].time), {.unit = "s", .help = "Time; ascending"});
     t.add("movie.path[].eye", MEMBER(movie.path[i].eye), {.unit = "world mm", .help = "Position of the eye"});
     t.add("movie.path[].target", MEMBER(movie.path[i].target),

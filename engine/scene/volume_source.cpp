@@ -96,6 +96,7 @@ void read_as(VolumeSource& source, const VolumeSource& other) {
     source.series = other.series;
     source.component = other.component;
     source.frame = other.frame;
+    source.frame_share = other.frame_share;
     source.level = other.level;
     source.resample = other.resample;
     source.spacing = other.spacing;
@@ -104,6 +105,28 @@ void read_as(VolumeSource& source, const VolumeSource& other) {
     source.label_names = other.label_names;
     source.registration = other.registration;
 }
+
+namespace {
+
+/// Moves the samples of a frame by this share towards those of the next one. Samples that one of them has no data for
+/// have none.
+void mix_in(Volume& volume, const Volume& next, double share) {
+    constexpr std::size_t kMask = 2;  // labels, whose mean is a share
+    const auto table = labels_of(volume);
+    if (volume.packed || (table && table->labels.size() > kMask))
+        fail("{}: volume.frame_share: {}: expected 0; {} between frames", volume.name, share,
+             volume.packed ? "packed volumes have nothing" : "labels have no numbers");
+    auto no_data = std::make_shared<std::vector<bool>>(volume.values.size());
+    for (std::size_t at = 0; at < volume.values.size(); ++at) {
+        (*no_data)[at] = !volume.has_data(at) || !next.has_data(at);
+        volume.values[at] = static_cast<float>((1 - share) * static_cast<double>(volume.values[at]) +
+                                               share * static_cast<double>(next.values[at]));
+    }
+    if (std::ranges::find(*no_data, true) != no_data->end()) volume.no_data = no_data;
+    finish_volume(volume);
+}
+
+}  // namespace
 
 VolumeSource reading_part(const VolumeSource& source) {
     VolumeSource part;
@@ -123,7 +146,14 @@ Volume read_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.resample = source.resample;
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
+    if (source.frame_share > 0 && !source.frame)
+        fail("volume.frame_share: {}: the share of a frame after another; expected volume.frame beside it",
+             source.frame_share);
     Volume volume = load_volume(path, options);
+    if (source.frame_share > 0) {
+        options.frame = *source.frame + 1;
+        mix_in(volume, load_volume(path, options), source.frame_share);
+    }
     if (!source.segmentation.empty()) {
         if (source.threshold)
             fail(

@@ -8,6 +8,7 @@
 #include <map>
 #include <thread>
 
+#include "engine/image/image_compare.h"
 #include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
@@ -207,11 +208,11 @@ TEST_F(CliMovie, AnimatesTheFileAsWholeNumbers) {
             const int x = i % 10 - 5, y = i / 10 % 10 - 5, z = i / 100 - 5;
             voxels += static_cast<char>(x * x + y * y + z * z <= radius * radius ? 100 : 0);
         }
-    std::ofstream(folder_ / "two.nrrd", std::ios::binary)
-        << "NRRD0004\ntype: uint8\ndimension: 4\nspace dimension: 3\nsizes: 10 10 10 2\nspace directions: (1,0,0) "
-           "(0,1,0) "
-           "(0,0,1) none\nkinds: space space space time\nencoding: raw\n\n" +
-               voxels;
+    const std::string head =
+        "NRRD0004\ntype: uint8\ndimension: 4\nspace dimension: 3\nsizes: 10 10 10 2\nspace directions: (1,0,0) "
+        "(0,1,0) "
+        "(0,0,1) none\nkinds: space space space time\nencoding: raw\n\n";
+    std::ofstream(folder_ / "two.nrrd", std::ios::binary) << head + voxels;
     std::ofstream(folder_ / "two.toml")
         << "iso_values = [50]\n[volume]\npath = \"two.nrrd\"\n[camera]\nview = \"front\"\n[output]\nsize = [24, 24]\n"
            "[movie]\nfps = 25\n[[movie.animate]]\nkey = \"volume.frame\"\ntimes = [0, 0.12]\nvalues = [0, 1]\n";
@@ -222,6 +223,48 @@ TEST_F(CliMovie, AnimatesTheFileAsWholeNumbers) {
     EXPECT_EQ(pixels("f/0.png"), pixels("0.png"));
     EXPECT_EQ(pixels("f/1.png"), pixels("0.png")) << "frame 0.3 is frame 0";
     EXPECT_NE(pixels("f/3.png"), pixels("0.png"));
+    good("movie two.toml -o g/%d.png --seconds 0.16 --set movie.interpolate_frames=true");
+    good("render two.toml --frame 0 --set volume.frame_share=0.3333333333 -o third.png");
+    EXPECT_EQ(pixels("g/0.png"), pixels("0.png"));
+    EXPECT_EQ(pixels("g/3.png"), pixels("f/3.png"));
+    EXPECT_NE(pixels("g/1.png"), pixels("0.png"));
+    EXPECT_GT(compare_images(read_image(folder_ / "g/1.png").image, read_image(folder_ / "third.png").image).psnr, 60);
+    for (char& voxel : voxels)
+        voxel = static_cast<char>(voxel == 0 ? 0 : 1 + (&voxel - voxels.data()) % 10 / 5);
+    std::ofstream(folder_ / "labels.nrrd", std::ios::binary) << head + voxels;
+    EXPECT_THAT(run("render labels.nrrd --frame 0 --set volume.frame_share=0.5 -o l.png").err,
+                HasSubstr("labels have no numbers between frames"));
+    const ProgramRun alone = run("render two.toml --set volume.frame_share=0.5 -o l.png");
+    EXPECT_THAT(alone.err, HasSubstr("expected volume.frame beside it"));
+}
+
+// Open iso-values are those of the first frame.
+TEST_F(CliMovie, KeepsTheSurfacesOfTheFirstFrame) {
+    std::string voxels;
+    for (const double contrast : {1.0, 0.5})
+        for (int i = 0; i < 12 * 12 * 12; ++i) {
+            const double x = i % 12 - 5.5, y = i / 12 % 12 - 5.5, z = i / 144 - 5.5;
+            voxels +=
+                static_cast<char>(std::lround(contrast * std::clamp(60 - 20 * (std::hypot(x, y, z) - 3), 0.0, 120.0)));
+        }
+    std::ofstream(folder_ / "two.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: uint8\ndimension: 4\nspace dimension: 3\nsizes: 12 12 12 2\nspace directions: (1,0,0) "
+           "(0,1,0) (0,0,1) none\nkinds: space space space time\nencoding: raw\n\n" +
+               voxels;
+    std::ofstream(folder_ / "two.toml")
+        << "[volume]\npath = \"two.nrrd\"\n[camera]\neye = [6, -20, 6]\ntarget = [6, 0, 6]\n[output]\nsize = [24, 24]\n"
+           "[movie]\nfps = 25\n[[movie.animate]]\nkey = \"volume.frame\"\ntimes = [0, 0.04]\nvalues = [0, 1]\n";
+    good("movie two.toml -o f/%d.png --seconds 0.08");
+    const auto pixels = [&](const char* name) { return read_image(folder_ / name).image.pixels; };
+    good("render two.nrrd --frame 0 -o 0.png --json 0.json --eye 6,-20,6 --target 6,0,6 --size 24x24");
+    const std::string iso = text_of(folder_ / "0.json");
+    const auto begin = iso.find("\"iso_values\"");
+    ASSERT_NE(begin, std::string::npos) << iso;
+    const std::string value = iso.substr(iso.find_first_of("0123456789", begin), 12);
+    good("render two.nrrd --frame 1 -o 1.png --eye 6,-20,6 --target 6,0,6 --size 24x24 --iso " +
+         std::to_string(std::stod(value)));
+    EXPECT_EQ(pixels("f/0.png"), pixels("0.png"));
+    EXPECT_GT(compare_images(read_image(folder_ / "f/1.png").image, read_image(folder_ / "1.png").image).psnr, 50);
 }
 
 // A ball that cuts a box moves.
