@@ -43,7 +43,7 @@ class Solid {
         }
         // A finer grid has details that the volume's samples cannot follow.
         const double step = std::cbrt(std::abs(glm::determinant(axes_)));
-        const auto smoothings = std::lround(std::max(kSmoothings * (step * step - 1), 0.0));
+        const auto smoothings = std::lround(std::clamp(kSmoothings * (step * step - 1), 0.0, kMostSmoothings));
         for (long i = 0; i < smoothings; ++i)
             even = box_filter(even);
         if (smoothings > 0) volume = even;
@@ -75,10 +75,11 @@ class Solid {
         return static_cast<std::size_t>((p.z * n.y + p.y) * n.x + p.x);
     }
 
-    static constexpr int kBlock = 4;             ///< voxels
-    static constexpr double kSmoothings = 0.25;  ///< means over 3^3 voxels, for grids n times as fine: times n^2 - 1
-    static constexpr int kEvenings = 2;          ///< so many more, and the field has a slope kCutReach from the surface
-    static constexpr double kStep = 0.5;         ///< of the search for the surface, voxels
+    static constexpr int kBlock = 4;               ///< voxels
+    static constexpr double kSmoothings = 0.25;    ///< means over 3^3 voxels, for grids n times as fine: times n^2 - 1
+    static constexpr double kMostSmoothings = 64;  ///< for grids 16 times as fine
+    static constexpr int kEvenings = 2;   ///< so many more, and the field has a slope kCutReach from the surface
+    static constexpr double kStep = 0.5;  ///< of the search for the surface, voxels
     static constexpr int kHalvings = 6;
 
     /// Along the slope to the surface.
@@ -127,34 +128,46 @@ class Solid {
     /// The side of blocks around which no surface is near: 1 in the solid, -1 outside; 0: a surface is near.
     void find_blocks(const std::vector<float>& values) {
         blocks_ = (grid_.dims + kBlock - 1) / kBlock;
-        glm::dvec3 way(2);  // the spline's support, and the reach of distances
-        for (int axis = 0; axis < 3; ++axis)
-            way[axis] += kCutReach * per_voxel_[axis];
-        const glm::ivec3 margin(glm::ceil(way));
         sides_.assign(offset({0, 0, blocks_.z}, blocks_), 0);
+        for_blocks([&](const glm::ivec3& block) { return side_of(values, block * kBlock); });
+        for (int axis = 0; axis < 3; ++axis) {
+            // The spline's support, and the reach of distances.
+            const double reach = std::ceil((2 + kCutReach * per_voxel_[axis]) / kBlock);
+            const int most = static_cast<int>(std::min<double>(reach, blocks_[axis]));
+            const std::vector<signed char> before = sides_;
+            for_blocks([&](glm::ivec3 block) {
+                const signed char side = before[offset(block, blocks_)];
+                const int first = std::max(block[axis] - most, 0),
+                          last = std::min(block[axis] + most, blocks_[axis] - 1);
+                for (block[axis] = first; block[axis] <= last; ++block[axis])
+                    if (before[offset(block, blocks_)] != side) return static_cast<signed char>(0);
+                return side;
+            });
+        }
+    }
+
+    /// Sets the side of each block.
+    template <typename Side>
+    void for_blocks(const Side& side) {
         parallel_for(blocks_.z, [&](int begin, int end) {
             for (int z = begin; z < end; ++z)
                 for (int y = 0; y < blocks_.y; ++y)
                     for (int x = 0; x < blocks_.x; ++x)
-                        sides_[offset({x, y, z}, blocks_)] = side_of(values, glm::ivec3(x, y, z) * kBlock, margin);
+                        sides_[offset({x, y, z}, blocks_)] = side(glm::ivec3(x, y, z));
         });
     }
 
-    signed char side_of(const std::vector<float>& values, const glm::ivec3& low, const glm::ivec3& margin) const {
-        const glm::ivec3 first = glm::max(low - margin, glm::ivec3(0));
-        const glm::ivec3 last = glm::min(low + kBlock + margin, grid_.dims) - 1;
+    signed char side_of(const std::vector<float>& values, const glm::ivec3& low) const {
+        const glm::ivec3 last = glm::min(low + kBlock, grid_.dims) - 1;
         bool any = false, all = true;
-        for (int z = first.z; z <= last.z; ++z)
-            for (int y = first.y; y <= last.y; ++y) {
-                const std::size_t row = offset({0, y, z}, grid_.dims);
-                for (int x = first.x; x <= last.x; ++x) {
-                    const bool in = values[row + static_cast<std::size_t>(x)] >= 0;
+        for (int z = low.z; z <= last.z; ++z)
+            for (int y = low.y; y <= last.y; ++y)
+                for (int x = low.x; x <= last.x; ++x) {
+                    const bool in = values[offset({x, y, z}, grid_.dims)] >= 0;
                     any = any || in;
                     all = all && in;
                 }
-                if (any && !all) return 0;
-            }
-        return all ? 1 : -1;
+        return static_cast<signed char>(all ? 1 : any ? 0 : -1);
     }
 
     VolumeGeometry grid_;

@@ -194,6 +194,30 @@ TEST(Cuts, EndAtTheBorderOfWhatCuts) {
     EXPECT_GT(without_solids(volume, 0.25, {&with_gap, 1}).at(4, 9, 9), 0.25);
 }
 
+/// Solids far smaller or larger than a voxel, flat or mirrored: finite, and gone or whole.
+TEST(Cuts, StayFiniteOnExtremeGrids) {
+    const Volume volume = sampled(cube(24), [](const glm::dvec3&) { return 1; });
+    for (const double scale : {1e-8, 1e-3, -0.5, 40.0, 1e7}) {
+        Cutter cutter = ball(cube(31));
+        Volume moved = *cutter.volume;
+        moved.geometry.index_to_world_axes *= scale;
+        moved.geometry.origin = glm::dvec3(12) - scale * kCentre;
+        cutter.volume = std::make_shared<const Volume>(moved);
+        const Volume cut = without_solids(volume, 0.25, {&cutter, 1});
+        EXPECT_EQ(cut.non_finite_count, 0U) << scale;
+        if (std::abs(scale) < 0.1) {
+            EXPECT_EQ(cut.at(6, 6, 6), 1) << scale;
+        } else if (scale > 2) {
+            EXPECT_LT(cut.max_value, 0.25) << scale;
+        } else {
+            EXPECT_LT(cut.at(12, 12, 12), 0.25) << scale;
+            EXPECT_EQ(cut.at(4, 12, 12), 1) << scale;
+        }
+    }
+    const Cutter itself{std::make_shared<const Volume>(volume), 0.25};
+    EXPECT_LE(without_solids(volume, 0.25, {&itself, 1}).max_value, 0.25F);
+}
+
 TEST(Cuts, RemoveLabels) {
     const Volume mask = sampled(cube(31), [](const glm::dvec3& p) { return p.x < 15 ? 1 : 2; });
     Volume labels = drawn_labels(mask, labels_of(mask), {true, true});
