@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "apps/edgesplat-fly/panels.h"
 #include "apps/edgesplat-fly/widgets.h"
@@ -32,7 +34,7 @@ SceneDocument& written_out(SceneDocument& d, const edgesplat::AddedVolume& added
 }
 
 /// Colour and opacity of the highest material, and its iso-value.
-void matter(AppState& state, std::size_t i, const edgesplat::AddedVolume added) {
+void matter(AppState& state, std::size_t i, const edgesplat::AddedVolume& added) {
     if (!added.transfer.empty() || added.materials.size() < 2) return;
     const edgesplat::Volume& volume = *added.volume;
     const edgesplat::Material& top = added.materials.back();
@@ -115,14 +117,15 @@ void volumes_panel(AppState& state) {
             break;
         }
         rules(state, entry.volume.rule, i);
-        const auto& before = session.document().volumes;
-        if (i >= before.size()) break;
-        if (entry.volume.visible && !cuts(before[i])) {
-            const auto cutters =
-                std::ranges::count_if(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(i), edgesplat::cuts);
-            matter(state, i, session.scene().added[i - static_cast<std::size_t>(cutters)]);
+        // Edits replace the document and the scene.
+        const std::vector<SceneDocument> entries = session.document().volumes;
+        if (i >= entries.size()) break;
+        if (entries[i].volume.visible && !cuts(entries[i])) {
+            const auto cutters = std::ranges::count_if(std::span(entries).first(i), edgesplat::cuts);
+            const edgesplat::AddedVolume added = session.scene().added[i - static_cast<std::size_t>(cutters)];
+            matter(state, i, added);
         }
-        place(state, before[i].volume, i);
+        place(state, entries[i].volume, i);
     }
     ImGui::Separator();
     static std::string path;

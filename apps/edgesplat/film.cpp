@@ -79,7 +79,7 @@ Film film_of(SceneDocument document, const std::vector<std::filesystem::path>& f
     film.document = std::move(document);
     film.source = film.document.volume;
     film.folders = folders;
-    film.whole = film.document.whole ? film.document.whole : std::move(volume);
+    film.whole = film.document.whole.volume ? film.document.whole.volume : std::move(volume);
     film.volume = film.cuts.apply(film.document, film.whole);
     if (!film.document.movie.animate.empty()) keep_surfaces(film);
     const edgesplat::RendererKind renderer = film.document.output.renderer;

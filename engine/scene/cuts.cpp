@@ -8,13 +8,22 @@
 namespace edgesplat {
 
 std::shared_ptr<const Volume> Cuts::apply(SceneDocument& document, std::shared_ptr<const Volume> whole) {
-    document.whole = nullptr;
+    document.whole = {};
     std::vector<Cutter> cutters;
-    for (SceneDocument& entry : document.volumes) {
-        entry.cut = nullptr;
+    const auto for_entries = [&](const auto& work) {
+        for (std::size_t i = 0; i < document.volumes.size(); ++i) {
+            try {
+                work(document.volumes[i]);
+            } catch (const Error& error) {
+                fail("volumes[{}]: {}", i, error.what());
+            }
+        }
+    };
+    for_entries([&](SceneDocument& entry) {
+        entry.cut = {};
         if (cuts(entry) && entry.volume.visible)
             cutters.push_back({entry.read->volume, lowest_matter(entry, *entry.read->volume)});
-    }
+    });
     std::vector<Cut> now;
     const auto cut = [&](const SceneDocument& matter, const std::shared_ptr<const Volume>& volume) {
         Cut wanted{volume, lowest_matter(matter, *volume), cutters, nullptr};
@@ -30,16 +39,10 @@ std::shared_ptr<const Volume> Cuts::apply(SceneDocument& document, std::shared_p
     std::shared_ptr<const Volume> first = whole;
     if (!cutters.empty()) {
         first = cut(document, whole);
-        document.whole = std::move(whole);
-        for (std::size_t i = 0; i < document.volumes.size(); ++i) {
-            SceneDocument& entry = document.volumes[i];
-            if (cuts(entry) || !entry.volume.visible) continue;
-            try {
-                entry.cut = cut(entry, entry.read->volume);
-            } catch (const Error& error) {
-                fail("volumes[{}]: {}", i, error.what());
-            }
-        }
+        document.whole = {std::move(whole)};
+        for_entries([&](SceneDocument& entry) {
+            if (!cuts(entry) && entry.volume.visible) entry.cut = {cut(entry, entry.read->volume)};
+        });
     }
     kept_ = std::move(now);
     return first;

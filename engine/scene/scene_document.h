@@ -144,6 +144,12 @@ struct ReadVolume {
     std::shared_ptr<const Volume> volume;
 };
 
+/// What follows from the rest of a document, so comparisons do not look at it.
+struct DerivedVolume {
+    std::shared_ptr<const Volume> volume;
+    bool operator==(const DerivedVolume&) const { return true; }
+};
+
 struct SceneDocument {
     std::string about;  ///< description in words
     VolumeSource volume;
@@ -167,8 +173,8 @@ struct SceneDocument {
     /// Volumes beside the first one. Of each only the volume and its matter count (kAddedKeys).
     std::vector<SceneDocument> volumes;
     std::shared_ptr<const ReadVolume> read;  ///< of an entry of `volumes` (read_volumes)
-    std::shared_ptr<const Volume> whole;     ///< the first volume before others cut it (Cuts); null: none does
-    std::shared_ptr<const Volume> cut;       ///< of an entry: the volume as others cut it (Cuts); null: none does
+    DerivedVolume whole;                     ///< the first volume before others cut it (Cuts); null: none does
+    DerivedVolume cut;                       ///< of an entry: the volume as others cut it (Cuts); null: none does
     bool operator==(const SceneDocument&) const = default;
 };
 

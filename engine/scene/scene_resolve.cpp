@@ -285,18 +285,18 @@ bool cuts(const SceneDocument& entry) {
 }
 
 Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
-    Scene scene = resolved_alone(document, document.whole ? *document.whole : volume, 0);
+    Scene scene = resolved_alone(document, document.whole.volume ? *document.whole.volume : volume, 0);
     for (std::size_t i = 0; i < document.volumes.size(); ++i) {
         const SceneDocument& entry = document.volumes[i];
         if (!entry.read) fail("volumes[{}]: {} is not read", i, entry.volume.path);
         if (cuts(entry)) {
-            if (entry.volume.visible && !document.whole)
+            if (entry.volume.visible && !document.whole.volume)
                 fail("volumes[{}]: {} has not cut the others", i, entry.volume.path);
             continue;
         }
         try {
             Scene one = resolved_alone(entry, *entry.read->volume, i + 1);
-            scene.added.push_back({entry.cut ? entry.cut : entry.read->volume, std::move(one.iso_values),
+            scene.added.push_back({entry.cut.volume ? entry.cut.volume : entry.read->volume, std::move(one.iso_values),
                                    std::move(one.materials), std::move(one.transfer), std::move(one.label_colors),
                                    one.clipped, entry.volume.rule == VolumeRule::Inside && entry.volume.visible,
                                    entry.volume.rim});
@@ -375,7 +375,7 @@ std::vector<AnimatedParameter> resolve_animation(const SceneDocument& document) 
 namespace {
 
 void write_out_matter(SceneDocument& document, const Scene& scene, const Volume& volume) {
-    const Volume& whole = document.whole ? *document.whole : volume;
+    const Volume& whole = document.whole.volume ? *document.whole.volume : volume;
     document.volume.checksum = fmt::format("{:016x}", whole.checksum);
     write_out_materials(document, scene, volume);
     document.iso_sigmas.clear();

@@ -101,9 +101,9 @@ void Session::follow_document() {
 
 void Session::forget_cuts() {
     history_->for_others([](SceneDocument& document) {
-        document.whole = nullptr;
+        document.whole = {};
         for (SceneDocument& entry : document.volumes)
-            entry.cut = nullptr;
+            entry.cut = {};
     });
 }
 

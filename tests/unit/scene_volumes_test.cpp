@@ -275,10 +275,10 @@ TEST(SceneVolumes, CutTheOthers) {
     SceneDocument document = read(kCutText, first);
     const auto box = std::make_shared<const Volume>(builtin_volume("builtin:box:20"));
     EXPECT_NE(first.checksum, box->checksum);
-    EXPECT_EQ(document.whole->checksum, box->checksum);
+    EXPECT_EQ(document.whole.volume->checksum, box->checksum);
     const Scene scene = resolve_scene(document, first);
     ASSERT_EQ(scene.added.size(), 1U);
-    EXPECT_EQ(scene.added[0].volume, document.volumes[1].cut);
+    EXPECT_EQ(scene.added[0].volume, document.volumes[1].cut.volume);
     EXPECT_NE(scene.added[0].volume->checksum, document.volumes[1].read->volume->checksum);
     EXPECT_THAT(scene.added[0].iso_values, ElementsAre(0.4));
     const Cutter ball{document.volumes[0].read->volume, 0.5};
