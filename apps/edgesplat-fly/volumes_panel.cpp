@@ -71,7 +71,7 @@ void rules(AppState& state, edgesplat::VolumeRule now, std::size_t i) {
     for (const auto& [rule, name] : {std::pair{Add, "add"}, {Inside, "inside"}, {Cut, "cut"}}) {
         if (!std::exchange(first, false)) ImGui::SameLine();
         if (ImGui::RadioButton(name, now == rule))
-            state.session.edit([i, rule](SceneDocument& d) { d.volumes[i].volume.rule = rule; });
+            state.session.edit([i, chosen = rule](SceneDocument& d) { d.volumes[i].volume.rule = chosen; });
         note(state, name);
     }
 }
