@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "apps/edgesplat-fly/panels.h"
 #include "apps/edgesplat-fly/widgets.h"
@@ -118,14 +117,13 @@ void volumes_panel(AppState& state) {
         }
         rules(state, entry.volume.rule, i);
         // Edits replace the document and the scene.
-        const std::vector<SceneDocument> entries = session.document().volumes;
-        if (i >= entries.size()) break;
-        if (entries[i].volume.visible && !cuts(entries[i])) {
-            const auto cutters = std::ranges::count_if(std::span(entries).first(i), edgesplat::cuts);
+        const SceneDocument now = session.document().volumes[i];
+        if (now.volume.visible && !cuts(now)) {
+            const auto cutters = std::ranges::count_if(std::span(session.document().volumes).first(i), edgesplat::cuts);
             const edgesplat::AddedVolume added = session.scene().added[i - static_cast<std::size_t>(cutters)];
             matter(state, i, added);
         }
-        place(state, entries[i].volume, i);
+        place(state, now.volume, i);
     }
     ImGui::Separator();
     static std::string path;

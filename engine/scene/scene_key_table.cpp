@@ -106,8 +106,8 @@ void add_volume(KeyTable& t) {
            .range = kOpacity,
            .absent = "the materials' extinctions"});
     t.add("volume.rule", MEMBER(volume.rule),
-          {.help = "Where a volume beside the first overlaps others: add: both are drawn; inside: within its grid only "
-                   "it, as a finer scan; cut: it is hidden and removes their matter",
+          {.help = "What a volume beside the first does where it overlaps others. add: both are drawn. inside: only it "
+                   "is drawn within its grid, as a finer scan. cut: it is hidden and removes their matter",
            .choices = {"add", "inside", "cut"}});
     t.add("volume.rim", MEMBER(volume.rim),
           {.unit = "mm",

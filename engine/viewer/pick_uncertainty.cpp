@@ -57,16 +57,7 @@ class LocalSpline {
     }
 
     double operator()(const glm::dvec3& voxel) const {
-        const glm::dvec3 p = glm::clamp(voxel - glm::dvec3(low_), glm::dvec3(0), glm::dvec3(dims_ - 1));
-        const SplineTaps x = spline_taps(p.x, dims_.x), y = spline_taps(p.y, dims_.y), z = spline_taps(p.z, dims_.z);
-        double sum = 0;
-        for (std::size_t k = 0; k < 4; ++k)
-            for (std::size_t j = 0; j < 4; ++j)
-                for (std::size_t i = 0; i < 4; ++i)
-                    sum += x.weights[i] * y.weights[j] * z.weights[k] *
-                           static_cast<double>(coefficients_[static_cast<std::size_t>(
-                               (z.places[k] * dims_.y + y.places[j]) * dims_.x + x.places[i])]);
-        return sum;
+        return spline_at(coefficients_, dims_, voxel - glm::dvec3(low_)).w;
     }
 
   private:

@@ -1,11 +1,11 @@
 #include "engine/volume/cut.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/error.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/parallel.h"
 
@@ -64,17 +64,12 @@ class Solid {
         }
         if (inside <= -kCutReach) return -kCutReach;
         const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), grid_.dims - 1);
-        const signed char side = sides_[offset(cell / kBlock, blocks_)];
+        const signed char side = sides_[voxel_offset(blocks_, cell / kBlock)];
         const double surface = side != 0 ? side * kCutReach : distance(place);
         return std::clamp(std::min(surface, inside), -kCutReach, kCutReach);
     }
 
   private:
-    static std::size_t offset(const glm::ivec3& at, const glm::ivec3& dims) {
-        const glm::dvec3 p(at), n(dims);
-        return static_cast<std::size_t>((p.z * n.y + p.y) * n.x + p.x);
-    }
-
     static constexpr int kBlock = 4;               ///< voxels
     static constexpr double kSmoothings = 0.25;    ///< means over 3^3 voxels, for grids n times as fine: times n^2 - 1
     static constexpr double kMostSmoothings = 64;  ///< for grids 16 times as fine
@@ -84,12 +79,14 @@ class Solid {
 
     /// Along the slope to the surface.
     double distance(const glm::dvec3& place) const {
-        const double side = at(coefficients_, place).w >= 0 ? 1 : -1;
-        const glm::dvec3 slope = glm::transpose(axes_) * glm::dvec3(at(directions_, place));
+        const double side = spline_at(coefficients_, grid_.dims, place).w >= 0 ? 1 : -1;
+        const glm::dvec3 slope = glm::transpose(axes_) * glm::dvec3(spline_at(directions_, grid_.dims, place));
         const double steepness = glm::length(slope);
         if (!(steepness > 0)) return side * kCutReach;
         const glm::dvec3 step = axes_ * (-side / steepness * slope);
-        const auto passed = [&](double way) { return side * at(coefficients_, place + way * step).w < 0; };
+        const auto passed = [&](double way) {
+            return side * spline_at(coefficients_, grid_.dims, place + way * step).w < 0;
+        };
         double near = 0, far = kStep;
         while (!passed(far)) {
             near = far;
@@ -103,32 +100,10 @@ class Solid {
         return side * 0.5 * (near + far);
     }
 
-    /// Slope and value of a spline with these coefficients, per voxel of the grid.
-    glm::dvec4 at(const std::vector<float>& coefficients, const glm::dvec3& place) const {
-        std::array<SplineTaps, 3> taps;
-        for (int axis = 0; axis < 3; ++axis)
-            taps[static_cast<std::size_t>(axis)] = spline_taps(place[axis], grid_.dims[axis]);
-        const auto& [tx, ty, tz] = taps;
-        glm::dvec4 sum(0);
-        for (std::size_t k = 0; k < 4; ++k)
-            for (std::size_t j = 0; j < 4; ++j) {
-                const std::size_t row = offset({0, ty.places[j], tz.places[k]}, grid_.dims);
-                double of_row = 0, slope_of_row = 0;
-                for (std::size_t i = 0; i < 4; ++i) {
-                    const auto c = static_cast<double>(coefficients[row + static_cast<std::size_t>(tx.places[i])]);
-                    of_row += tx.weights[i] * c;
-                    slope_of_row += tx.slopes[i] * c;
-                }
-                sum += glm::dvec4(tz.weights[k] * ty.weights[j] * slope_of_row, tz.weights[k] * ty.slopes[j] * of_row,
-                                  tz.slopes[k] * ty.weights[j] * of_row, tz.weights[k] * ty.weights[j] * of_row);
-            }
-        return sum;
-    }
-
     /// The side of blocks around which no surface is near: 1 in the solid, -1 outside; 0: a surface is near.
     void find_blocks(const std::vector<float>& values) {
         blocks_ = (grid_.dims + kBlock - 1) / kBlock;
-        sides_.assign(offset({0, 0, blocks_.z}, blocks_), 0);
+        sides_.assign(voxel_offset(blocks_, {0, 0, blocks_.z}), 0);
         for_blocks([&](const glm::ivec3& block) { return side_of(values, block * kBlock); });
         for (int axis = 0; axis < 3; ++axis) {
             // The spline's support, and the reach of distances.
@@ -136,11 +111,11 @@ class Solid {
             const int most = static_cast<int>(std::min<double>(reach, blocks_[axis]));
             const std::vector<signed char> before = sides_;
             for_blocks([&](glm::ivec3 block) {
-                const signed char side = before[offset(block, blocks_)];
+                const signed char side = before[voxel_offset(blocks_, block)];
                 const int first = std::max(block[axis] - most, 0),
                           last = std::min(block[axis] + most, blocks_[axis] - 1);
                 for (block[axis] = first; block[axis] <= last; ++block[axis])
-                    if (before[offset(block, blocks_)] != side) return static_cast<signed char>(0);
+                    if (before[voxel_offset(blocks_, block)] != side) return static_cast<signed char>(0);
                 return side;
             });
         }
@@ -153,7 +128,7 @@ class Solid {
             for (int z = begin; z < end; ++z)
                 for (int y = 0; y < blocks_.y; ++y)
                     for (int x = 0; x < blocks_.x; ++x)
-                        sides_[offset({x, y, z}, blocks_)] = side(glm::ivec3(x, y, z));
+                        sides_[voxel_offset(blocks_, {x, y, z})] = side(glm::ivec3(x, y, z));
         });
     }
 
@@ -163,7 +138,7 @@ class Solid {
         for (int z = low.z; z <= last.z; ++z)
             for (int y = low.y; y <= last.y; ++y)
                 for (int x = low.x; x <= last.x; ++x) {
-                    const bool in = values[offset({x, y, z}, grid_.dims)] >= 0;
+                    const bool in = values[voxel_offset(grid_.dims, {x, y, z})] >= 0;
                     any = any || in;
                     all = all && in;
                 }

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_internal.h"
 #include "engine/volume/parallel.h"
@@ -92,24 +93,26 @@ Volume box_filter(const Volume& volume) {
         result.shown_labels = volume.shown_labels;
     }
     const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x) {
-                double sum = 0;
-                int count = 0;
-                for (int dz = -1; dz <= 1; ++dz)
-                    for (int dy = -1; dy <= 1; ++dy)
-                        for (int dx = -1; dx <= 1; ++dx) {
-                            const std::size_t at =
-                                volume.index_of(std::clamp(x + dx, 0, dims.x - 1), std::clamp(y + dy, 0, dims.y - 1),
-                                                std::clamp(z + dz, 0, dims.z - 1));
-                            if (!volume.has_data(at)) continue;
-                            sum += static_cast<double>(volume.values[at]);
-                            ++count;
-                        }
-                result.values[static_cast<std::size_t>(z * slice + y * row + x)] =
-                    static_cast<float>(sum / std::max(count, 1));
-            }
+    parallel_for(dims.z, [&](int begin, int end) {
+        for (int z = begin; z < end; ++z)
+            for (int y = 0; y < dims.y; ++y)
+                for (int x = 0; x < dims.x; ++x) {
+                    double sum = 0;
+                    int count = 0;
+                    for (int dz = -1; dz <= 1; ++dz)
+                        for (int dy = -1; dy <= 1; ++dy)
+                            for (int dx = -1; dx <= 1; ++dx) {
+                                const std::size_t at = volume.index_of(std::clamp(x + dx, 0, dims.x - 1),
+                                                                       std::clamp(y + dy, 0, dims.y - 1),
+                                                                       std::clamp(z + dz, 0, dims.z - 1));
+                                if (!volume.has_data(at)) continue;
+                                sum += static_cast<double>(volume.values[at]);
+                                ++count;
+                            }
+                    result.values[static_cast<std::size_t>(z * slice + y * row + x)] =
+                        static_cast<float>(sum / std::max(count, 1));
+                }
+    });
     finish_volume(result);
     return result;
 }
@@ -223,6 +226,25 @@ SplineTaps spline_taps(double place, int size) {
         taps.slopes = {};
     }
     return taps;
+}
+
+glm::dvec4 spline_at(const std::vector<float>& coefficients, const glm::ivec3& dims, const glm::dvec3& place) {
+    const SplineTaps x = spline_taps(place.x, dims.x), y = spline_taps(place.y, dims.y),
+                     z = spline_taps(place.z, dims.z);
+    glm::dvec4 sum(0);
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t j = 0; j < 4; ++j) {
+            const std::size_t row = voxel_offset(dims, {0, y.places[j], z.places[k]});
+            double of_row = 0, slope_of_row = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const auto c = static_cast<double>(coefficients[row + static_cast<std::size_t>(x.places[i])]);
+                of_row += x.weights[i] * c;
+                slope_of_row += x.slopes[i] * c;
+            }
+            sum += glm::dvec4(z.weights[k] * y.weights[j] * slope_of_row, z.weights[k] * y.slopes[j] * of_row,
+                              z.slopes[k] * y.weights[j] * of_row, z.weights[k] * y.weights[j] * of_row);
+        }
+    return sum;
 }
 
 double mean_of(const Volume& volume) {

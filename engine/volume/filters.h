@@ -70,6 +70,9 @@ struct SplineTaps {
 };
 /// `place` may be any number. size >= 1.
 SplineTaps spline_taps(double place, int size);
+/// Slope, per step along each axis, and value (w) of the spline with these coefficients at the nearest place between
+/// the outermost samples.
+glm::dvec4 spline_at(const std::vector<float>& coefficients, const glm::ivec3& dims, const glm::dvec3& place);
 
 /// Mean of the samples with data; 0 if there are none. Of a packed volume as its file states it.
 double mean_of(const Volume& volume);
